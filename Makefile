@@ -1,0 +1,38 @@
+# `make demo` and `make test` set up everything they need in .venv; Python 3.11+ and make are all a machine must have.
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+
+.PHONY: demo test lint tests quick urdf clean
+
+demo: $(VENV)/installed
+	$(BIN)/pin-metaik demo
+
+test: lint tests
+
+lint: $(VENV)/developed
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+tests: $(VENV)/developed
+	$(BIN)/python -m pytest -n 2 --dist loadgroup
+
+quick: $(VENV)/developed
+	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not slow"
+
+urdf: $(VENV)/installed
+	$(BIN)/pin-metaik urdf --all
+
+clean:
+	rm -rf $(VENV) dist build .mypy_cache .ruff_cache .pytest_cache
+
+$(VENV)/installed: pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --editable .
+	touch $@
+
+$(VENV)/developed: $(VENV)/installed
+	$(BIN)/python -m pip install --quiet --editable ".[dev]"
+	touch $@

@@ -1,0 +1,81 @@
+"""Every error this package raises on purpose: one family, each with its values and what would have worked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+
+class MetaIKError(ValueError):
+    """A call that makes no sense. A target that cannot be reached is not one: that is a status of the result."""
+
+
+class UnknownName(MetaIKError):
+    """A name that is not in a registry.
+
+    Attributes:
+        kind: What was looked for, e.g. ``"robot"``.
+        name: The name given.
+        known: The names that would have worked, sorted.
+    """
+
+    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+        self.kind, self.name, self.known = kind, name, sorted(known)
+        near = get_close_matches(name, self.known, n=1)
+        hint = f"; did you mean {near[0]!r}?" if near else ";"
+        super().__init__(f"no {kind} named {name!r}{hint} known: {', '.join(self.known)}")
+
+
+class InvalidBounds(MetaIKError):
+    """Limits that are crossed, not finite where they must be, or of the wrong length."""
+
+
+class InvalidBudget(MetaIKError):
+    """A budget that would never end, or that allows nothing."""
+
+
+class InvalidSetting(MetaIKError):
+    """A setting of an algorithm or a solver outside its range."""
+
+
+class InvalidTarget(MetaIKError):
+    """A target that is not a pose: wrong shape, not finite, not orthonormal, or a tolerance below zero."""
+
+
+class InvalidConfiguration(MetaIKError):
+    """A configuration or coordinate vector of the wrong length or with values that are not finite."""
+
+
+class InvalidTable(MetaIKError):
+    """A DH table (or its TOML file) that cannot be a robot; the message names the key or row."""
+
+
+class InvalidModel(MetaIKError):
+    """A robot description that cannot be read: missing, malformed, or without what it refers to."""
+
+
+class UnsupportedJoint(MetaIKError):
+    """A joint on the path with more than one degree of freedom, or of a kind no chain can hold."""
+
+
+class FrameNotFound(UnknownName):
+    """A frame that the model does not have."""
+
+    def __init__(self, name: str, known: Iterable[str]) -> None:
+        super().__init__("frame", name, known)
+
+
+class FixedFrame(MetaIKError):
+    """A frame that no joint of the chain moves."""
+
+
+class InvalidGeometry(MetaIKError):
+    """A shape that is not one: negative sizes, polygons that cross themselves, empty meshes."""
+
+
+class MissingExtra(MetaIKError):
+    """A feature whose optional dependency is not installed."""
+
+    def __init__(self, feature: str, extra: str) -> None:
+        self.feature, self.extra = feature, extra
+        super().__init__(f"{feature} needs an optional dependency: pip install 'pin-metaik[{extra}]'")
