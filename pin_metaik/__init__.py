@@ -1,0 +1,3 @@
+"""Global inverse kinematics for Pinocchio."""
+
+__version__ = "0.1.0"
