@@ -1,3 +1,54 @@
-"""Global inverse kinematics for Pinocchio."""
+"""Global inverse kinematics for Pinocchio: metaheuristics find the region, a refinement finds the solution.
+
+import pin_metaik as mik
+
+robot = mik.load_robot("panda")
+chain = mik.Chain(robot.model, robot.frame)
+result = mik.solve_ik(chain, target)      # pin.SE3, 4x4, a position (3,) or a mik.Target
+result.success, result.q, result.status
+"""
+
+from pin_metaik.errors import MetaIKError
+from pin_metaik.ik import (
+    DLS,
+    REFINERS,
+    IKProblem,
+    IKResult,
+    IKSolver,
+    IKStatus,
+    Refinement,
+    Refiner,
+    Target,
+    solve_ik,
+)
+from pin_metaik.kinematics import Chain, Limits
+from pin_metaik.optimize import ALGORITHMS, AskTell, Box, Budget, Metaheuristic, Search, minimize
+from pin_metaik.robots import Robot, load_robot, robot_names
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "ALGORITHMS",
+    "DLS",
+    "REFINERS",
+    "AskTell",
+    "Box",
+    "Budget",
+    "Chain",
+    "IKProblem",
+    "IKResult",
+    "IKSolver",
+    "IKStatus",
+    "Limits",
+    "MetaIKError",
+    "Metaheuristic",
+    "Refinement",
+    "Refiner",
+    "Robot",
+    "Search",
+    "Target",
+    "load_robot",
+    "minimize",
+    "robot_names",
+    "solve_ik",
+]

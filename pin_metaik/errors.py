@@ -6,6 +6,9 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 
+LISTED, NEAR = 100, 8  # longer lists than this are cut to the nearest names
+
+
 class MetaIKError(ValueError):
     """A call that makes no sense. A target that cannot be reached is not one: that is a status of the result."""
 
@@ -21,9 +24,12 @@ class UnknownName(MetaIKError):
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
         self.kind, self.name, self.known = kind, name, sorted(known)
-        near = get_close_matches(name, self.known, n=1)
+        near = get_close_matches(name, self.known, n=NEAR, cutoff=0.5)
         hint = f"; did you mean {near[0]!r}?" if near else ";"
-        super().__init__(f"no {kind} named {name!r}{hint} known: {', '.join(self.known)}")
+        shown = ", ".join(self.known)
+        if len(self.known) > LISTED:
+            shown = f"{', '.join(near or self.known[:NEAR])} ... ({len(self.known)} in all)"
+        super().__init__(f"no {kind} named {name!r}{hint} known: {shown}")
 
 
 class InvalidBounds(MetaIKError):

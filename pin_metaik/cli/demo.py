@@ -1,0 +1,66 @@
+"""``pin-metaik demo``: the RV-7FL cases by every seeder, alone and refined, then a Panda and a UR5 pose."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+from rich.console import Console
+from rich.table import Table
+
+from pin_metaik.ik import IKResult, IKSolver, Target, solve_ik
+from pin_metaik.kinematics import Chain
+from pin_metaik.optimize import Budget
+from pin_metaik.robots import load_robot
+
+RV7FL_CASES = {  # m; DEU FMD 26(78), 2024
+    "RV-7FL 1": (0.035, -0.905, 0.400),
+    "RV-7FL 2": (0.63925, -0.64594, 0.40079),
+    "RV-7FL 3": (-0.050, -0.905, 0.315),
+}
+POSES = {  # the frame's position (m) and roll, pitch, yaw (rad)
+    "panda": ((0.4, 0.2, 0.5), (np.pi, 0.0, 0.3)),
+    "ur5": ((0.3, 0.3, 0.4), (0.0, np.pi / 2, 0.0)),
+}
+METHODS = {
+    f"{seeder}{' + dls' if refiner else ''}": IKSolver(seeder, refiner, Budget(evaluations=30_000))
+    for seeder in ("gwo", "mtde", "sfla")
+    for refiner in (None, "dls")
+}
+
+
+def demo() -> None:
+    """Solve the RV-7FL paper's three cases with each seeder, alone and refined, and a Panda and a UR5 pose."""
+    console = Console(highlight=False)
+    table = Table(box=None)
+    table.add_column("target")
+    table.add_column("method")
+    table.add_column("status")
+    for heading in ("error mm", "error rad", "evals", "ms"):
+        table.add_column(heading, justify="right")
+
+    arm = load_robot("rv7fl_paper")
+    chain = Chain(arm.model, arm.frame)
+    for case, position in RV7FL_CASES.items():
+        for method, solver in METHODS.items():
+            _add(table, case, method, solve_ik(chain, Target.at(position), solver=solver))
+        table.add_section()
+    for name, (position, rpy) in POSES.items():
+        robot = load_robot(name)
+        chain = Chain(robot.model, robot.frame)
+        pose = pin.SE3(pin.rpy.rpyToMatrix(*rpy), np.array(position))
+        _add(table, name, "default", solve_ik(chain, pose))
+    console.print(table)
+    console.print("\nErrors are Pinocchio's, recomputed from the answer. RV-7FL: position only, as in its paper.")
+
+
+def _add(table: Table, target: str, method: str, result: IKResult) -> None:
+    table.add_row(
+        target,
+        method,
+        str(result.status),
+        f"{1e3 * result.position_error:.1e}",
+        f"{result.orientation_error:.1e}",
+        str(result.evaluations),
+        f"{1e3 * result.seconds:.1f}",
+        style="green" if result.success else "yellow",
+    )

@@ -1,0 +1,114 @@
+"""``pin-metaik solve``: one target, one answer."""
+
+from __future__ import annotations
+
+import json
+from math import degrees, radians
+from typing import Annotated
+
+import numpy as np
+import typer
+from numpy.typing import NDArray
+from rich.console import Console
+
+from pin_metaik.errors import InvalidTarget
+from pin_metaik.ik import REFINERS, IKResult, IKSolver, Target, solve_ik
+from pin_metaik.kinematics import Chain
+from pin_metaik.kinematics.pose import rpy_matrix
+from pin_metaik.optimize import ALGORITHMS, Budget
+from pin_metaik.robots import load_robot
+
+SEEDERS = f"auto, none, {', '.join(ALGORITHMS)}"
+
+
+def solve(
+    robot: Annotated[str, typer.Argument(help="A robot's name (see `robots`), or the path of a .urdf or DH .toml.")],
+    position: Annotated[
+        tuple[float, float, float] | None, typer.Option(metavar="X Y Z", help="Target position in metres.")
+    ] = None,
+    rpy: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(metavar="R P Y", help="Target orientation Rz(Y) Ry(P) Rx(R) in radians; without it: any."),
+    ] = None,
+    frame: Annotated[str | None, typer.Option(help="The frame to place; default: the robot's tip.")] = None,
+    seeder: Annotated[str, typer.Option(help=f"Where starts come from: {SEEDERS}.")] = "auto",
+    refiner: Annotated[str, typer.Option(help=f"What refines them: {', '.join(REFINERS)} or none.")] = "dls",
+    evaluations: Annotated[int, typer.Option(help="Forward kinematics that may be spent.")] = 50_000,
+    rng: Annotated[int, typer.Option(min=0, help="Seed of every random choice.")] = 0,
+    in_degrees: Annotated[bool, typer.Option("--degrees", help="Angles in degrees: --rpy and the printed q.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Solve for one target. Exit code 0: solved, 1: not solved, 2: the call makes no sense."""
+    if position is None and rpy is None:
+        raise InvalidTarget("nothing to reach: give --position X Y Z, --rpy R P Y, or both")
+    loaded = load_robot(robot)
+    chain = Chain(loaded.model, frame or loaded.frame)
+    solver = IKSolver(
+        None if seeder == "none" else seeder,
+        None if refiner == "none" else refiner,
+        Budget(evaluations=evaluations),
+    )
+    result = solve_ik(chain, _target(position, rpy, in_degrees), solver=solver, rng=rng)
+    if as_json:
+        print(json.dumps(report(loaded.name, chain, result, in_degrees), allow_nan=False))
+    else:
+        show(loaded.name, chain, result, in_degrees)
+    raise typer.Exit(0 if result.success else 1)
+
+
+def _target(
+    position: tuple[float, float, float] | None, rpy: tuple[float, float, float] | None, in_degrees: bool
+) -> Target:
+    if rpy is None:
+        return Target.at(position or ())
+    rotation = rpy_matrix(*(radians(a) if in_degrees else a for a in rpy))
+    if position is None:
+        return Target.facing(rotation)
+    pose = np.eye(4)
+    pose[:3, :3] = rotation
+    pose[:3, 3] = position
+    return Target(pose)
+
+
+def report(robot: str, chain: Chain, result: IKResult, in_degrees: bool) -> dict[str, object]:
+    """A result as plain values; q is Pinocchio's whole configuration, joints the chain's coordinates by name."""
+    return {
+        "robot": robot,
+        "frame": chain.frames[0],
+        "status": str(result.status),
+        "success": result.success,
+        "q": _angles(chain, result, in_degrees),
+        "joints": dict(zip(chain.names, _shown(chain, result.x, in_degrees), strict=True)),
+        "position_error": result.position_error,
+        "orientation_error": result.orientation_error,
+        "evaluations": result.evaluations,
+        "seconds": result.seconds,
+    }
+
+
+def show(robot: str, chain: Chain, result: IKResult, in_degrees: bool) -> None:
+    """A result for people."""
+    console = Console(highlight=False)
+    console.print(
+        f"{robot}, {chain.frames[0]}: {result}", style="green" if result.success else "yellow", soft_wrap=True
+    )
+    for i, (name, value) in enumerate(zip(chain.names, _shown(chain, result.x, in_degrees), strict=True)):
+        unit = "m" if not chain.limits.rotates[i] else "deg" if in_degrees else "rad"
+        console.print(f"  {name:24} {value:12.6f} {unit}")
+    if not result.success:
+        console.print(f"  {result.why}", soft_wrap=True)
+
+
+def _shown(chain: Chain, x: NDArray[np.float64], in_degrees: bool) -> list[float]:
+    return [
+        degrees(v) if in_degrees and turns else v for v, turns in zip(x.tolist(), chain.limits.rotates, strict=True)
+    ]
+
+
+def _angles(chain: Chain, result: IKResult, in_degrees: bool) -> list[float]:
+    """The entries of q; in degrees the chain's angles (the cos and sin of a continuous joint stay as they are)."""
+    q = result.q.copy()
+    if in_degrees:
+        at = chain.coordinates
+        q[at.plain_q] = np.array(_shown(chain, result.x, True))[at.plain]
+    return [float(v) for v in q]

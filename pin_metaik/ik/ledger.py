@@ -1,0 +1,90 @@
+"""The books of one search: what was spent, the best so far, and why it ended."""
+
+from __future__ import annotations
+
+import math
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.refine import Refinement
+from pin_metaik.ik.result import IKStatus
+from pin_metaik.optimize import Budget, Result, Status
+
+ENDLESS = 2**62
+
+
+class Ledger:
+    """Keeps the best coordinates and the budget of one search.
+
+    Attributes:
+        x: (n,) the best coordinates so far.
+        met: Whether they met the tolerances, by the kernels; Pinocchio has the last word.
+        spent: Evaluations so far.
+        interrupted: Whether Ctrl-C ended it.
+        traces: Convergence of each round of a seeder: (g, 2) evaluations and best cost.
+    """
+
+    def __init__(self, problem: IKProblem, budget: Budget, began: float, x0: NDArray[np.float64]) -> None:
+        self.x = x0
+        self.met = False
+        self.spent = 0
+        self.interrupted = False
+        self.traces: list[NDArray[np.float64]] = []
+        self._problem = problem
+        self._budget = budget
+        self._began = began
+        self._cost = math.inf
+
+    @property
+    def status(self) -> IKStatus:
+        """Why a search ended that has not solved its problem."""
+        if self._problem.gap > 0.0:
+            return IKStatus.UNREACHABLE
+        return IKStatus.STOPPED if self.interrupted or self._late() else IKStatus.OUT_OF_TOLERANCE
+
+    def left(self, share: float = 1.0) -> int:
+        """Evaluations left of this share of the budget."""
+        total = self._budget.evaluations
+        return ENDLESS if total is None else max(0, int(share * total) - self.spent)
+
+    def over(self, share: float = 1.0) -> bool:
+        """Whether the search is over: solved, interrupted, or this share of the budget spent."""
+        return self.met or self.interrupted or self.left(share) == 0 or self._late(share)
+
+    def slice(self, share: float) -> Budget:
+        """A budget for one round of seeding: this share of what is left."""
+        total, seconds = self._budget.evaluations, self._budget.seconds
+        goal = self._problem.good_enough if self._budget.target is None else self._budget.target
+        return Budget(
+            None if total is None else max(1, int(share * self.left())),
+            None if seconds is None else max(1e-3, share * (seconds - self._elapsed())),
+            goal,
+        )
+
+    def add(self, refinement: Refinement) -> None:
+        """Enter what a refiner found and spent."""
+        self.spent += refinement.evaluations
+        if refinement.met:
+            self.met, self.x = True, refinement.x
+            return
+        cost = float(self._problem.costs(refinement.x[None])[0])
+        if cost < self._cost:
+            self._cost, self.x = cost, refinement.x
+
+    def add_search(self, found: Result) -> None:
+        """Enter what a seeder found and spent."""
+        if found.trace is not None:
+            self.traces.append(found.trace + np.array([self.spent, 0.0]))
+        self.spent += found.evaluations
+        self.interrupted = self.interrupted or found.status is Status.INTERRUPTED
+        if found.cost < self._cost:
+            self._cost, self.x = found.cost, found.x
+
+    def _elapsed(self) -> float:
+        return perf_counter() - self._began
+
+    def _late(self, share: float = 1.0) -> bool:
+        return self._budget.seconds is not None and self._elapsed() >= share * self._budget.seconds

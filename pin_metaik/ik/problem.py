@@ -1,0 +1,136 @@
+"""An inverse-kinematics problem: what is descended (a cost) and what counts (a test)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple, cast
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from pin_metaik.errors import FrameNotFound, InvalidTarget
+from pin_metaik.ik.target import Target, TargetLike
+from pin_metaik.kinematics import Chain, Limits
+from pin_metaik.optimize import Box
+
+
+class Verdict(NamedTuple):
+    """What Pinocchio says of a configuration: the worst frame's errors (m, rad), and whether all is as asked."""
+
+    position_error: float
+    orientation_error: float
+    accepted: bool
+
+
+@dataclass(frozen=True, eq=False)
+class IKProblem:
+    """Targets for the frames of a chain, inside limits.
+
+    Attributes:
+        chain: The chain.
+        targets: One for each of its frames, in the chain's order.
+        tasks: (T, 26) the targets as the kernels take them.
+    """
+
+    chain: Chain
+    targets: tuple[Target, ...]
+    tasks: NDArray[np.float64]
+
+    @staticmethod
+    def of(chain: Chain, target: TargetLike | Sequence[TargetLike]) -> IKProblem:
+        """Match what somebody asks for to the chain's frames.
+
+        Args:
+            chain: The chain.
+            target: A target for its only frame, or a list with one for each frame: in the chain's order, or each
+                naming its frame.
+
+        Raises:
+            InvalidTarget: If a target is none, or a frame has none, or more than one.
+            FrameNotFound: If a target names a frame that is not the chain's.
+        """
+        several = len(chain.frames) > 1 or (
+            isinstance(target, (list, tuple)) and any(isinstance(one, (Target, pin.SE3)) for one in target)
+        )
+        if not several:
+            targets: tuple[Target, ...] = (Target.of(cast(TargetLike, target)),)
+        elif isinstance(target, Target) or not isinstance(target, Sequence):
+            raise InvalidTarget(f"this chain places {', '.join(chain.frames)}: give a list of targets, one for each")
+        else:
+            targets = tuple(Target.of(one) for one in target)
+        if several or targets[0].frame is not None:
+            targets = _match(chain.frames, targets)
+        return IKProblem(chain, targets, np.array([one.task for one in targets]))
+
+    @property
+    def limits(self) -> Limits:
+        """The limits of the chain's coordinates."""
+        return self.chain.limits
+
+    @property
+    def box(self) -> Box:
+        """The box to sample and search in."""
+        return self.chain.box
+
+    @cached_property
+    def rows(self) -> NDArray[np.int64]:
+        """(m, 2) the (frame, axis) pairs that count: three translations, three rotations, less the free ones."""
+        return np.ascontiguousarray(np.argwhere(np.isfinite(self.tasks[:, 12:18])))
+
+    @cached_property
+    def good_enough(self) -> float:
+        """A cost that is certainly within every tolerance."""
+        return float(np.min(self.tasks[:, [18, 21]] * self.tasks[:, [24, 25]]))
+
+    @cached_property
+    def gap(self) -> float:
+        """How far (m) the targets are proved to be out of reach; 0 proves nothing."""
+        return max(
+            self.chain.reach(t, oriented=math.isfinite(target.allowance[1])).gap(target.pose, *target.allowance)
+            for t, target in enumerate(self.targets)
+        )
+
+    def costs(self, X: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Cost (k,) of coordinates X (k, n): weighted distance in m plus weighted angle in rad, summed over the frames.
+
+        For a position alone this is the distance in metres.
+        """
+        out = np.empty(len(X))
+        self.chain.kernels.costs(*self.chain.paths.arrays, self.tasks, X, out)
+        return out
+
+    def verdict(self, q: NDArray[np.float64]) -> Verdict:
+        """Judge a configuration q (nq,) with Pinocchio's forward kinematics and the limits."""
+        position = orientation = 0.0
+        accepted = self.chain.limits.contains(self.chain.x(q))
+        for target, placement in zip(self.targets, self.chain.placements(q), strict=True):
+            judged = target.judge(placement)
+            position = max(position, judged.position_error)
+            orientation = max(orientation, judged.orientation_error)
+            accepted = accepted and judged.met
+        return Verdict(position, orientation, accepted)
+
+    def accepts(self, q: NDArray[np.float64]) -> bool:
+        """Whether q (nq,) is a solution."""
+        return self.verdict(q).accepted
+
+
+def _match(frames: tuple[str, ...], targets: tuple[Target, ...]) -> tuple[Target, ...]:
+    """The targets in the order of the frames."""
+    if len(targets) == len(frames) and all(target.frame is None for target in targets):
+        return targets
+    by_frame = {}
+    for target in targets:
+        if target.frame is None or target.frame in by_frame:
+            raise InvalidTarget(f"this chain places {', '.join(frames)}: give one target a frame, each naming its own")
+        if target.frame not in frames:
+            raise FrameNotFound(target.frame, frames)
+        by_frame[target.frame] = target
+    missing = [name for name in frames if name not in by_frame]
+    if missing:
+        raise InvalidTarget(f"no target for {', '.join(missing)}; a chain places all of its frames at once")
+    return tuple(by_frame[name] for name in frames)

@@ -1,0 +1,54 @@
+"""Damped least squares with the limits inside the step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.refine.protocol import Refinement
+
+
+@dataclass(frozen=True)
+class DLS:
+    """Damped least squares (Nakamura and Hanafusa 1986; Wampler 1986), all starts in one compiled loop.
+
+    Each step is dx = -J' (J J' + lambda I)^-1 e over the joints that are not at a limit and pushed outward, with
+    lambda = damping |e|^2 + 1e-9, then brought inside the limits. A start is given up when five steps do not take
+    the error below 70 % of what it was.
+
+    Attributes:
+        damping: What the squared error is multiplied with, 1/m^2 or 1/rad^2.
+        iterations: Steps from one start at most.
+    """
+
+    damping: float = 0.05
+    iterations: int = 100
+
+    def __post_init__(self) -> None:
+        """Raises InvalidSetting for a negative damping or less than one iteration."""
+        if not 0.0 <= self.damping < np.inf:
+            raise InvalidSetting(f"damping is a finite number of at least 0, got {self.damping!r}")
+        if self.iterations < 1:
+            raise InvalidSetting(f"iterations is at least 1, got {self.iterations!r}")
+
+    def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
+        """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent."""
+        chain = problem.chain
+        best = np.empty(chain.n)
+        spent, solved_by = chain.kernels.descend(
+            *chain.paths.arrays,
+            problem.tasks,
+            problem.rows,
+            chain.limits.lower,
+            chain.limits.upper,
+            starts,
+            self.damping,
+            self.iterations,
+            evaluations,
+            best,
+        )
+        return Refinement(best, solved_by >= 0, spent)

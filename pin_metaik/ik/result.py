@@ -1,0 +1,96 @@
+"""What an inverse-kinematics search ended with, and why."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.ik.problem import IKProblem
+
+AT_LIMIT = 1e-9  # rad or m
+
+
+class IKStatus(StrEnum):
+    """Why a search ended; only ``SOLVED`` is a success."""
+
+    SOLVED = "SOLVED"
+    """Within the tolerances and inside the limits, by Pinocchio."""
+    UNREACHABLE = "UNREACHABLE"
+    """Proved out of reach: farther from, or nearer to, a joint than the links between can span."""
+    OUT_OF_TOLERANCE = "OUT_OF_TOLERANCE"
+    """The budget of evaluations is spent and nothing found is close enough."""
+    IN_COLLISION = "IN_COLLISION"
+    """The target is met only in collision."""
+    STOPPED = "STOPPED"
+    """Time was up, or the search was interrupted."""
+
+
+@dataclass(frozen=True, eq=False)
+class IKResult:
+    """The best configuration found. It is inside the limits whether the target is met or not.
+
+    Attributes:
+        q: (nq,) configuration.
+        status: Why the search ended.
+        position_error: Distance to the target in m, by Pinocchio; the worst frame's; 0 when position is free.
+        orientation_error: Angle to the target in rad, by Pinocchio; the worst frame's; 0 when orientation is free.
+        evaluations: Forward kinematics computed, one a configuration.
+        seconds: Time taken, s.
+        problem: What was asked.
+        trace: (g, 2) evaluations and best cost after each generation of the seeder, when asked for.
+    """
+
+    q: NDArray[np.float64]
+    status: IKStatus
+    position_error: float
+    orientation_error: float
+    evaluations: int
+    seconds: float
+    problem: IKProblem
+    trace: NDArray[np.float64] | None = None
+
+    @property
+    def success(self) -> bool:
+        """Whether the target is met."""
+        return self.status is IKStatus.SOLVED
+
+    @property
+    def x(self) -> NDArray[np.float64]:
+        """(n,) the chain's coordinates at ``q``."""
+        return self.problem.chain.x(self.q)
+
+    @property
+    def binding(self) -> tuple[str, ...]:
+        """Names of the joints that are at a limit."""
+        limits, x = self.problem.limits, self.x
+        at_limit = (x <= limits.lower + AT_LIMIT) | (x >= limits.upper - AT_LIMIT)
+        return tuple(name for name, binds in zip(limits.names, at_limit, strict=True) if binds)
+
+    @property
+    def why(self) -> str:
+        """The reason for the status, in words."""
+        match self.status:
+            case IKStatus.SOLVED:
+                return "within the tolerances and inside the limits"
+            case IKStatus.UNREACHABLE:
+                return f"out of reach: at least {self.problem.gap:.3g} m beyond what the links can span"
+            case IKStatus.OUT_OF_TOLERANCE:
+                stuck = f"; at a limit: {', '.join(self.binding)}" if self.binding else ""
+                return f"nothing close enough found in {self.evaluations} evaluations; this is the nearest{stuck}"
+            case IKStatus.IN_COLLISION:
+                return "met only in collision"
+            case IKStatus.STOPPED:
+                return "stopped before it was solved; this is the best so far"
+
+    def verify(self) -> bool:
+        """Judge ``q`` again by Pinocchio and the limits."""
+        return self.problem.accepts(self.q)
+
+    def __str__(self) -> str:
+        return (
+            f"{self.status}: {self.position_error:.3g} m, {self.orientation_error:.3g} rad from the target after "
+            f"{self.evaluations} evaluations in {1e3 * self.seconds:.3g} ms"
+        )

@@ -1,0 +1,160 @@
+"""Global inverse kinematics: starts or a metaheuristic find the region, a refiner the solution, Pinocchio judges."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pin_metaik.errors import InvalidBudget, InvalidSetting
+from pin_metaik.ik.ledger import Ledger
+from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.refine import DLS, Refiner, make_refiner
+from pin_metaik.ik.result import IKResult, IKStatus
+from pin_metaik.ik.starts import DEFAULT_SEED, start_batches
+from pin_metaik.ik.target import TargetLike
+from pin_metaik.kinematics import Chain
+from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
+
+ELITE = 8  # points of a seeder's search that are refined
+SEEDER_SHARE = 0.25  # of the budget, for one round of the seeder before its elite is refined
+RESTART_SHARE = 0.5  # of the budget, for restarts before the automatic solver turns to a seeder
+FALLBACK = "mtde"  # ... which is this one
+
+Rng: TypeAlias = int | np.random.Generator | None
+
+
+@dataclass(frozen=True)
+class IKSolver:
+    """How to search: where starts come from, what refines them, and how much may be spent.
+
+    ``IKSolver()`` is what to use without thinking: damped least squares from ``q0`` and then from random starts, and
+    metaheuristic seeds when half of the budget has not solved it. ``IKSolver(seeder=None, starts=1)`` is the classical
+    Jacobian method, ``IKSolver("gwo", None)`` the pure metaheuristic, ``IKSolver("gwo", "dls")`` the hybrid.
+
+    Attributes:
+        seeder: ``"auto"``, a metaheuristic's name or object, or ``None``: ``q0`` and random starts only.
+        refiner: A refiner's name or object, or ``None``: the seeder's best is the answer.
+        budget: Evaluations are forward kinematics, one a configuration (a refiner's step is one, its Jacobian comes
+            with it). A budget in seconds is looked at every few milliseconds, and not reproducible. ``target`` is the
+            cost at which a pure metaheuristic stops; by default it stops once the tolerances are met.
+        starts: How many starts to refine without a seeder; ``None``: until the budget is spent.
+        trace: Whether to keep the seeder's convergence.
+    """
+
+    seeder: str | Metaheuristic | None = "auto"
+    refiner: str | Refiner | None = "dls"
+    budget: Budget = field(default=Budget(evaluations=50_000))
+    starts: int | None = None
+    trace: bool = False
+
+    def __post_init__(self) -> None:
+        """Check names and settings where they enter.
+
+        Raises:
+            UnknownName: No metaheuristic or refiner of that name.
+            InvalidSetting: Neither a seeder nor a refiner, or fewer than one start.
+            InvalidBudget: A budget that never ends.
+        """
+        if self.seeder is not None and self.seeder != "auto":
+            make(self.seeder)
+        if self.refiner is not None:
+            make_refiner(self.refiner)
+        elif self.seeder is None or self.seeder == "auto":
+            raise InvalidSetting("without a refiner name a seeder, e.g. IKSolver('gwo', None)")
+        if self.starts is not None and self.starts < 1:
+            raise InvalidSetting(f"starts is at least 1 or None, got {self.starts}")
+        if not self.budget.ends:
+            raise InvalidBudget("this search might never end: give the budget evaluations=... or seconds=...")
+
+    def solve(self, problem: IKProblem, q0: ArrayLike | None = None, rng: Rng = None) -> IKResult:
+        """Search until the targets are met or the budget is spent; see ``solve_ik`` for the arguments."""
+        began = perf_counter()
+        chain = problem.chain
+        base = chain.reference if q0 is None else chain.configuration(q0)
+        x0 = chain.limits.clip(chain.x(base))
+        ledger = Ledger(problem, self.budget, began, x0)
+        try:
+            if self.seeder is None or self.seeder == "auto":
+                self._restart(problem, x0, rng, ledger)
+            if self.seeder is not None and not ledger.over() and problem.gap == 0.0:
+                self._seed(problem, None if q0 is None else x0[None], rng, ledger)
+        except KeyboardInterrupt:
+            ledger.interrupted = True
+        q = chain.q(ledger.x, base)
+        verdict = problem.verdict(q)
+        return IKResult(
+            q=q,
+            status=IKStatus.SOLVED if verdict.accepted else ledger.status,
+            position_error=verdict.position_error,
+            orientation_error=verdict.orientation_error,
+            evaluations=ledger.spent,
+            seconds=perf_counter() - began,
+            problem=problem,
+            trace=np.concatenate(ledger.traces) if ledger.traces else None,
+        )
+
+    def _restart(self, problem: IKProblem, x0: NDArray[np.float64], rng: Rng, ledger: Ledger) -> None:
+        """Refine from x0 (n,), then from random starts."""
+        refiner = make_refiner(self.refiner or DLS())
+        share = 1.0 if self.seeder is None else RESTART_SHARE
+        for starts in start_batches(problem.chain, x0, rng, self.starts):
+            ledger.add(refiner.refine(problem, starts, ledger.left(share)))
+            if ledger.over(share) or problem.gap > 0.0:
+                return
+
+    def _seed(self, problem: IKProblem, seeds: NDArray[np.float64] | None, rng: Rng, ledger: Ledger) -> None:
+        """Search with the metaheuristic; with a refiner in rounds, each refining the elite of its search."""
+        seeder = make(FALLBACK if self.seeder is None or self.seeder == "auto" else self.seeder)
+        generator = np.random.default_rng(DEFAULT_SEED if rng is None else rng)
+        share = 1.0 if self.refiner is None else SEEDER_SHARE
+        while True:
+            budget = ledger.slice(share)
+            found = minimize(
+                problem.costs, problem.box, seeder, budget, generator, seeds=seeds, trace=self.trace, keep=ELITE
+            )
+            ledger.add_search(found)
+            if self.refiner is None:
+                return
+            ledger.add(make_refiner(self.refiner).refine(problem, found.elite, ledger.left()))
+            if ledger.over() or problem.gap > 0.0:
+                return
+            seeds = None
+
+
+def solve_ik(
+    chain: Chain,
+    target: TargetLike | Sequence[TargetLike],
+    q0: ArrayLike | None = None,
+    *,
+    solver: IKSolver | None = None,
+    rng: Rng = None,
+) -> IKResult:
+    """Find a configuration that places the chain's frames where they shall be.
+
+    Args:
+        chain: The joints to move and the frames to place.
+        target: World pose of the chain's frame (``pin.SE3`` or 4x4), a position (3,) in m, a ``Target``, or one
+            ``Target`` for each frame of a chain that has several.
+        q0: (nq,) configuration to start from; joints outside the chain stay as they are in it. Default: the chain's
+            reference.
+        solver: How to search; default ``IKSolver()``.
+        rng: Seed or generator of every random choice; ``None`` is a fixed seed, so that the same call gives the same
+            answer.
+
+    Returns:
+        The result: check ``result.success``. A target out of reach is a result too, with the nearest pose found.
+
+    Raises:
+        InvalidTarget: If the target is not a pose, position or orientation.
+        InvalidConfiguration: If ``q0`` is not a configuration of the model.
+        InvalidBounds: If a joint of the chain has no finite range to search in.
+    """
+    return (solver or DEFAULT_SOLVER).solve(IKProblem.of(chain, target), q0, rng)
+
+
+DEFAULT_SOLVER = IKSolver()

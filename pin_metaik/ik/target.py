@@ -1,0 +1,154 @@
+"""What a frame shall reach: a pose, a position or an orientation, and how closely."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import ArrayLike, NDArray
+
+from pin_metaik.errors import InvalidTarget
+from pin_metaik.kinematics.pose import as_pose, as_position
+
+TargetLike: TypeAlias = "Target | pin.SE3 | ArrayLike"
+Tolerance: TypeAlias = float | tuple[float, float, float]
+
+DEFAULT_TOLERANCE = 1e-5
+FREE = math.inf
+
+
+@dataclass(frozen=True, eq=False)
+class Target:
+    """A pose for one frame, with tolerances and weights.
+
+    A tolerance is one number, the radius within which the error must lie, or three, one for each axis of the target
+    frame; ``inf`` frees an axis. So ``Target.at(xyz)`` frees all three rotations, and
+    ``Target(pose, orientation_tolerance=(1e-5, 1e-5, inf))`` only the one about the target's z axis. The orientation
+    error is the rotation vector log(R_target' R).
+
+    Attributes:
+        pose: World pose the frame shall reach: ``pin.SE3`` or (4, 4); kept as (4, 4).
+        frame: Which frame of the chain; ``None`` for a chain's only one.
+        position_tolerance: m.
+        orientation_tolerance: rad.
+        position_weight: What a metre of error counts while searching.
+        orientation_weight: What a radian of error counts while searching.
+
+    Raises:
+        InvalidTarget: If the pose is not one, a tolerance is not above zero, a weight is not finite and above zero, or
+            nothing is left that counts.
+    """
+
+    pose: NDArray[np.float64]
+    frame: str | None = None
+    position_tolerance: Tolerance = DEFAULT_TOLERANCE
+    orientation_tolerance: Tolerance = DEFAULT_TOLERANCE
+    position_weight: float = 1.0
+    orientation_weight: float = 1.0
+    task: NDArray[np.float64] = field(init=False, repr=False)  # (26,) as the kernels take it
+
+    def __post_init__(self) -> None:
+        """Check everything once, where it enters."""
+        pose = as_pose(self.pose)
+        object.__setattr__(self, "pose", pose)
+        task = np.empty(26)
+        rotation = pose[:3, :3].T
+        task[:9] = rotation.ravel()
+        task[9:12] = -(rotation @ pose[:3, 3])
+        task[12:15], task[24] = _slack("position_tolerance", self.position_tolerance)
+        task[15:18], task[25] = _slack("orientation_tolerance", self.orientation_tolerance)
+        task[18:21] = _weight("position_weight", self.position_weight)
+        task[21:24] = _weight("orientation_weight", self.orientation_weight)
+        if FREE == self.position_tolerance == self.orientation_tolerance or np.isinf(task[12:18]).all():
+            raise InvalidTarget("this target frees every axis: nothing is left to reach")
+        object.__setattr__(self, "task", task)
+
+    @staticmethod
+    def at(xyz: ArrayLike, *, frame: str | None = None, tolerance: Tolerance = DEFAULT_TOLERANCE) -> Target:
+        """A position (3,) in m, at any orientation."""
+        pose = np.eye(4)
+        pose[:3, 3] = as_position(xyz)
+        return Target(pose, frame, position_tolerance=tolerance, orientation_tolerance=FREE)
+
+    @staticmethod
+    def facing(rotation: ArrayLike, *, frame: str | None = None, tolerance: Tolerance = DEFAULT_TOLERANCE) -> Target:
+        """An orientation (3, 3), anywhere."""
+        matrix = np.asarray(rotation)
+        if matrix.shape != (3, 3):
+            raise InvalidTarget(f"an orientation has shape (3, 3), got {matrix.shape}")
+        pose = np.eye(4)
+        pose[:3, :3] = matrix
+        return Target(pose, frame, position_tolerance=FREE, orientation_tolerance=tolerance)
+
+    @staticmethod
+    def of(target: Target | pin.SE3 | ArrayLike) -> Target:
+        """Whatever ``solve_ik`` takes as a target: a Target, a ``pin.SE3``, a 4x4 matrix, or a position (3,)."""
+        if isinstance(target, Target):
+            return target
+        if isinstance(target, pin.SE3):
+            return Target(target)
+        try:
+            array = np.asarray(target, dtype=float)
+        except (TypeError, ValueError):
+            array = np.empty(0)
+        if array.shape == (4, 4):
+            return Target(array)
+        if array.shape == (3,):
+            return Target.at(array)
+        raise InvalidTarget(f"a target is a pin.SE3, a 4x4 matrix, a position (3,) or a Target, got {target!r}")
+
+    @property
+    def allowance(self) -> tuple[float, float]:
+        """The largest distance (m) and angle (rad) that may still be met; ``inf`` when an axis is free."""
+        return _radius(self.position_tolerance), _radius(self.orientation_tolerance)
+
+    def judge(self, placement: pin.SE3) -> Judgement:
+        """How far a world placement is from this target, and whether that is close enough; by Pinocchio."""
+        rotation, offset = self.task[:9].reshape(3, 3), self.task[9:12]
+        away = (rotation @ placement.translation + offset).tolist()
+        turn = pin.log3(rotation @ placement.rotation).tolist()
+        position, near = _measure(away, self.position_tolerance)
+        orientation, aligned = _measure(turn, self.orientation_tolerance)
+        return Judgement(position, orientation, near and aligned)
+
+
+class Judgement(NamedTuple):
+    """Distance (m) and angle (rad) over the axes that count, and whether they are within the tolerances."""
+
+    position_error: float
+    orientation_error: float
+    met: bool
+
+
+def _measure(error: list[float], tolerance: Tolerance) -> tuple[float, bool]:
+    """Size of an error (3,) over the axes that are not free, and whether it is within the tolerance."""
+    if isinstance(tolerance, tuple):
+        within = all(abs(e) <= t for e, t in zip(error, tolerance, strict=True))
+        return math.hypot(*(e for e, t in zip(error, tolerance, strict=True) if t < FREE)), within
+    if tolerance == FREE:
+        return 0.0, True
+    size = math.hypot(*error)
+    return size, size <= tolerance
+
+
+def _radius(tolerance: Tolerance) -> float:
+    return math.hypot(*tolerance) if isinstance(tolerance, tuple) else tolerance
+
+
+def _slack(name: str, tolerance: Tolerance) -> tuple[NDArray[np.float64] | float, float]:
+    """A tolerance as the kernels take it, a little tighter than asked: slack per axis, and radius beyond the slack."""
+    given = tolerance if isinstance(tolerance, tuple) else (tolerance,)
+    if len(given) not in (1, 3) or not all(isinstance(t, (int, float)) and t > 0.0 for t in given):
+        raise InvalidTarget(f"{name} is a number above 0 or a tuple of three (inf frees an axis), got {tolerance!r}")
+    if len(given) == 1:
+        return (FREE, FREE) if given[0] == FREE else (0.0, 0.999 * given[0])
+    return np.multiply(given, 0.9), 0.099 * min(given)
+
+
+def _weight(name: str, weight: float) -> float:
+    if not (isinstance(weight, (int, float)) and 0.0 < weight < math.inf):
+        raise InvalidTarget(f"{name} is a finite number above 0, got {weight!r}")
+    return weight

@@ -1,0 +1,219 @@
+"""A chain: the joints of a Pinocchio model that move one or several frames, and their coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import ArrayLike, NDArray
+
+from pin_metaik.errors import FixedFrame, FrameNotFound, InvalidConfiguration, UnknownName
+from pin_metaik.kinematics.coordinates import Coordinates
+from pin_metaik.kinematics.limits import Limits, finite_or_infinite
+from pin_metaik.kinematics.loading import load_kernels
+from pin_metaik.kinematics.paths import lay_paths, motion_of
+from pin_metaik.kinematics.reach import Reach, reach_of
+from pin_metaik.optimize import Box
+
+REMEMBERED = 16  # sets of samples kept
+
+
+class Chain:
+    """The joints on the way to one or several frames of a ``pin.Model``, as n coordinates with limits.
+
+    A coordinate is a revolute, prismatic or continuous joint; joints that mimic another follow it; everything else is
+    held where ``reference`` has it. The model is only read, never written to.
+
+    Attributes:
+        model: The model.
+        frames: Names of the T frames.
+        names: Names of the n joints, one a coordinate.
+        limits: Their limits.
+        reference: (nq,) the configuration that joints outside the chain are held at.
+        paths: The arrays the compiled loops take.
+        kernels: The compiled loops.
+    """
+
+    def __init__(
+        self,
+        model: pin.Model,
+        frame: str | Iterable[str],
+        *,
+        locked: Iterable[str] = (),
+        limits: Mapping[str, tuple[float, float]] | None = None,
+        reference: ArrayLike | None = None,
+    ) -> None:
+        """Find the joints that move ``frame``.
+
+        Args:
+            model: Any Pinocchio model.
+            frame: A frame's name, or several that are to be placed at once.
+            locked: Joints on the way that shall stay where ``reference`` has them.
+            limits: Ranges (lower, upper) in rad or m that replace the model's, by joint name.
+            reference: (nq,) configuration of the joints that are not moved; default: neutral, inside the limits.
+
+        Raises:
+            FrameNotFound: If the model has no such frame.
+            FixedFrame: If no joint is left that moves it.
+            UnsupportedJoint: If a joint on the way has several degrees of freedom (lock it), or no single axis.
+            UnknownName: If a locked joint does not exist.
+            InvalidBounds: If limits are crossed or NaN.
+            InvalidConfiguration: If ``reference`` is not a configuration of the model.
+        """
+        self.model = model
+        self.frames = (frame,) if isinstance(frame, str) else tuple(frame)
+        self.frame_ids = tuple(_frame_id(model, name) for name in self.frames)
+        self._least, self._most = _entry_limits(model)
+        self.reference = self.configuration(pin.neutral(model) if reference is None else reference)
+
+        held = {_joint_id(model, name) for name in locked}
+        on_path = {j for f in self.frame_ids for j in list(model.supports[model.frames[f].parentJoint])[1:]}
+        motions = {j: motion_of(model, j) for j in sorted(on_path - held)}
+        motions = {j: motion for j, motion in motions.items() if motion.driver not in held}
+        drivers = sorted({motion.driver for motion in motions.values()}, key=lambda j: int(model.joints[j].idx_v))
+        for name, f in zip(self.frames, self.frame_ids, strict=True):
+            if not motions.keys() & set(model.supports[model.frames[f].parentJoint]):
+                raise FixedFrame(
+                    f"no joint moves frame {name!r}" + (f" while {sorted(locked)} are locked" if held else "")
+                )
+
+        self.names = tuple(model.names[j] for j in drivers)
+        self.coordinates = _coordinates(model, drivers)
+        self.limits = _limits(model, drivers, self.names).replace(dict(limits or {}))
+        plain, entries = self.coordinates.plain, self.coordinates.plain_q
+        self._least[entries], self._most[entries] = self.limits.lower[plain], self.limits.upper[plain]
+        self.paths = lay_paths(model, self.frame_ids, {j: c for c, j in enumerate(drivers)}, motions, self.reference)
+        self.data = model.createData()
+        self.kernels = load_kernels()
+        self._samples: dict[tuple[int, tuple[int, ...]], NDArray[np.float64]] = {}
+        self._reaches: dict[tuple[int, bool], Reach] = {}
+
+    @property
+    def n(self) -> int:
+        """Number of coordinates."""
+        return len(self.names)
+
+    def q(self, x: ArrayLike, q0: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        """Configurations (..., nq) at coordinates x (..., n); other joints stay as in ``q0`` (default: reference)."""
+        coordinates = np.asarray(x, dtype=float)
+        q = np.empty((*coordinates.shape[:-1], self.model.nq))
+        q[...] = self.reference if q0 is None else q0
+        self.coordinates.write(coordinates, q)
+        return q
+
+    def x(self, q: ArrayLike) -> NDArray[np.float64]:
+        """Coordinates (..., n) of configurations q (..., nq); continuous joints as an angle in (-pi, pi]."""
+        return self.coordinates.read(np.asarray(q, dtype=float))
+
+    def configuration(self, q: ArrayLike) -> NDArray[np.float64]:
+        """A configuration (nq,) somebody gave: checked, and with every joint brought inside its limits.
+
+        Raises:
+            InvalidConfiguration: If its length is not nq or an entry is not finite.
+        """
+        configuration = as_configuration(self.model, q)
+        return np.minimum(np.maximum(configuration, self._least), self._most)
+
+    @cached_property
+    def box(self) -> Box:
+        """The finite box to search in: the limits, or one turn for joints that have none.
+
+        Raises:
+            InvalidBounds: If a sliding joint has no finite limits.
+        """
+        return self.limits.box()
+
+    def sample(self, count: int, seed: tuple[int, ...]) -> NDArray[np.float64]:
+        """Coordinates (count, n) drawn uniformly from the box; the same for the same seed, and then at no cost."""
+        if (count, seed) not in self._samples:
+            if len(self._samples) == REMEMBERED:
+                self._samples.clear()
+            self._samples[count, seed] = self.box.sample(np.random.default_rng(seed), count)
+        return self._samples[count, seed].copy()
+
+    def reach(self, tip: int, oriented: bool) -> Reach:
+        """Bounds on how far tip number ``tip`` gets, for targets with or without a full orientation."""
+        if (tip, oriented) not in self._reaches:
+            self._reaches[tip, oriented] = reach_of(self.paths, self.limits, tip, oriented)
+        return self._reaches[tip, oriented]
+
+    def placements(self, q: NDArray[np.float64]) -> list[pin.SE3]:
+        """World placement of each frame at configuration q (nq,), by Pinocchio."""
+        pin.forwardKinematics(self.model, self.data, q)
+        return [pin.updateFramePlacement(self.model, self.data, f).copy() for f in self.frame_ids]
+
+    def poses(self, X: ArrayLike) -> NDArray[np.float64]:
+        """World poses (k, T, 4, 4) of the T frames at the coordinates X (k, n), by the compiled loop."""
+        population = np.ascontiguousarray(np.atleast_2d(np.asarray(X, dtype=float)))
+        flat = np.empty((len(population), len(self.frames), 12))
+        self.kernels.poses(*self.paths.arrays, population, flat)
+        poses = np.zeros((*flat.shape[:2], 4, 4))
+        poses[..., :3, :3] = flat[..., :9].reshape(*flat.shape[:2], 3, 3)
+        poses[..., :3, 3] = flat[..., 9:]
+        poses[..., 3, 3] = 1.0
+        return poses
+
+    def __repr__(self) -> str:
+        return f"Chain({self.model.name}: {', '.join(self.frames)}; {self.n} joints: {', '.join(self.names)})"
+
+
+def as_configuration(model: pin.Model, q: ArrayLike) -> NDArray[np.float64]:
+    """A configuration (nq,) of the model, checked.
+
+    Raises:
+        InvalidConfiguration: If its length is not nq or an entry is not finite.
+    """
+    try:
+        configuration = np.array(q, dtype=float)
+    except (TypeError, ValueError):
+        raise InvalidConfiguration(f"a configuration is {model.nq} numbers, got {q!r}") from None
+    if configuration.shape != (model.nq,):
+        raise InvalidConfiguration(
+            f"a configuration of {model.name!r} has shape ({model.nq},), got {configuration.shape}"
+        )
+    if not np.isfinite(configuration).all():
+        raise InvalidConfiguration(f"a configuration has finite entries, got {configuration}")
+    return configuration
+
+
+def _entry_limits(model: pin.Model) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Limits (nq,) of the entries of q that are a joint's coordinate; pairs and quaternions have none."""
+    least, most = np.full(model.nq, -np.inf), np.full(model.nq, np.inf)
+    for joint in list(model.joints)[1:]:
+        if joint.nq == 1:
+            least[joint.idx_q] = model.lowerPositionLimit[joint.idx_q]
+            most[joint.idx_q] = model.upperPositionLimit[joint.idx_q]
+    return least, most
+
+
+def _frame_id(model: pin.Model, name: str) -> int:
+    if not model.existFrame(name):
+        raise FrameNotFound(str(name), [frame.name for frame in model.frames if frame.name != "universe"])
+    return int(model.getFrameId(name))
+
+
+def _joint_id(model: pin.Model, name: str) -> int:
+    if not model.existJointName(name):
+        raise UnknownName("joint", str(name), list(model.names)[1:])
+    return int(model.getJointId(name))
+
+
+def _coordinates(model: pin.Model, drivers: list[int]) -> Coordinates:
+    columns = np.arange(len(drivers))
+    entry = np.array([model.joints[j].idx_q for j in drivers], dtype=np.int64)
+    circular = np.array([model.joints[j].nq == 2 for j in drivers], dtype=bool)
+    return Coordinates(
+        np.array(drivers, dtype=np.int64), columns[~circular], entry[~circular], columns[circular], entry[circular]
+    )
+
+
+def _limits(model: pin.Model, drivers: list[int], names: tuple[str, ...]) -> Limits:
+    lower = finite_or_infinite([model.lowerPositionLimit[model.joints[j].idx_q] for j in drivers])
+    upper = finite_or_infinite([model.upperPositionLimit[model.joints[j].idx_q] for j in drivers])
+    velocity = finite_or_infinite([model.upperVelocityLimit[model.joints[j].idx_v] for j in drivers])
+    turns = np.array([motion_of(model, j).rotates for j in drivers])
+    pair = np.array([model.joints[j].nq == 2 for j in drivers])
+    lower[pair], upper[pair] = -np.inf, np.inf
+    return Limits(lower, upper, velocity, turns, names)

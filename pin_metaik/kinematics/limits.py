@@ -1,0 +1,110 @@
+"""Joint limits in the coordinates that a search moves in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pin_metaik.errors import InvalidBounds
+from pin_metaik.optimize import Box
+
+UNBOUNDED = 1e300
+"""Pinocchio writes "no limit" as the largest float; anything beyond this is infinite."""
+
+
+@dataclass(frozen=True, eq=False)
+class Limits:
+    """Lower and upper limits of n joint coordinates.
+
+    Attributes:
+        lower: (n,) rad or m, ``-inf`` where there is none.
+        upper: (n,) rad or m, ``inf`` where there is none.
+        velocity: (n,) rad/s or m/s, ``inf`` where there is none.
+        rotates: (n,) True for an angle, False for a travel.
+        names: The joint of each coordinate, for messages.
+    """
+
+    lower: NDArray[np.float64]
+    upper: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    rotates: NDArray[np.bool_]
+    names: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        """Refuse limits that no configuration can keep.
+
+        Raises:
+            InvalidBounds: If a limit is NaN or a lower limit is above its upper one; the joint is named.
+        """
+        for name, lower, upper in zip(self.names, self.lower, self.upper, strict=True):
+            if np.isnan(lower) or np.isnan(upper):
+                raise InvalidBounds(f"joint {name!r} has limits [{lower}, {upper}]: NaN is not a limit")
+            if lower > upper:
+                raise InvalidBounds(f"joint {name!r} has its lower limit {lower} above its upper limit {upper}")
+
+    @property
+    def periodic(self) -> NDArray[np.bool_]:
+        """(n,) True for a coordinate that returns after a turn and has no limits: a continuous joint."""
+        return self.rotates & np.isinf(self.lower) & np.isinf(self.upper)
+
+    def box(self) -> Box:
+        """The finite box to sample in: the limits, or one turn where a rotating joint has none.
+
+        Raises:
+            InvalidBounds: If a sliding joint has no finite limits: there is no natural range to search.
+        """
+        lower, upper = self.lower.copy(), self.upper.copy()
+        for i in np.flatnonzero(np.isinf(lower) | np.isinf(upper)):
+            if not self.rotates[i]:
+                raise InvalidBounds(
+                    f"joint {self.names[i]!r} has limits [{lower[i]}, {upper[i]}]: a search needs finite ones; "
+                    f"pass them with Chain(..., limits={{{self.names[i]!r}: (lower, upper)}})"
+                )
+            if np.isinf(lower[i]):
+                lower[i] = -np.pi if np.isinf(upper[i]) else upper[i] - 2.0 * np.pi
+            if np.isinf(upper[i]):
+                upper[i] = lower[i] + 2.0 * np.pi
+        return Box(lower, upper)
+
+    def clip(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The nearest coordinates inside the limits; periodic ones are left as they are."""
+        return np.minimum(np.maximum(x, self.lower), self.upper)
+
+    def contains(self, x: NDArray[np.float64], tolerance: float = 0.0) -> bool:
+        """Whether every coordinate is inside its limits, up to ``tolerance`` (rad or m)."""
+        return bool(np.all(x >= self.lower - tolerance) and np.all(x <= self.upper + tolerance))
+
+    def replace(self, limits: dict[str, tuple[float, float]]) -> Limits:
+        """The same limits with some joints' ranges replaced, e.g. ``{"joint_2": (-1.0, 1.0)}``.
+
+        Raises:
+            InvalidBounds: If a name is not a joint of this chain, or a range is crossed or NaN.
+        """
+        lower, upper = self.lower.copy(), self.upper.copy()
+        for name, span in limits.items():
+            if name not in self.names:
+                raise InvalidBounds(
+                    f"limits given for {name!r}, which this chain does not move: {', '.join(self.names)}"
+                )
+            i = self.names.index(name)
+            lower[i], upper[i] = _pair(name, span)
+        return Limits(lower, upper, self.velocity, self.rotates, self.names)
+
+
+def finite_or_infinite(values: ArrayLike) -> NDArray[np.float64]:
+    """Limits as Pinocchio stores them, with its "no limit" turned into an infinity."""
+    array = np.array(values, dtype=float)
+    array[array >= UNBOUNDED] = np.inf
+    array[array <= -UNBOUNDED] = -np.inf
+    return array
+
+
+def _pair(name: str, span: Sequence[float]) -> tuple[float, float]:
+    try:
+        low, high = (float(v) for v in span)
+    except (TypeError, ValueError):
+        raise InvalidBounds(f"limits of joint {name!r} are (lower, upper), got {span!r}") from None
+    return low, high

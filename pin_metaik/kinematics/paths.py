@@ -1,0 +1,125 @@
+"""A model's joints as the flat arrays that the compiled loops walk along."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from pin_metaik.errors import UnsupportedJoint
+
+
+@dataclass(frozen=True, eq=False)
+class Paths:
+    """The way from the world to each of T tips, over S joints, in n coordinates; see ``kernels`` for the layout."""
+
+    joints: NDArray[np.float64]  # (S, 14)
+    wiring: NDArray[np.int64]  # (S, 2)
+    ends: NDArray[np.int64]  # (T + 1,)
+    tips: NDArray[np.float64]  # (T, 12)
+
+    @property
+    def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+        """The four arrays in the order in which every kernel takes them."""
+        return self.joints, self.wiring, self.ends, self.tips
+
+
+@dataclass(frozen=True)
+class Motion:
+    """How a joint follows a coordinate: along or about ``axis`` by ``scale x + shift``.
+
+    Attributes:
+        driver: Id of the joint whose coordinate is followed: the joint itself, or the one it mimics.
+        axis: (3,) unit vector in the joint frame.
+        rotates: About the axis, else along it.
+    """
+
+    driver: int
+    axis: NDArray[np.float64]
+    rotates: bool
+    scale: float
+    shift: float
+
+
+def motion_of(model: pin.Model, joint: int) -> Motion:
+    """Axis and kind of a joint with one degree of freedom, read from its motion subspace S.
+
+    Raises:
+        UnsupportedJoint: If it has more than one degree of freedom, or turns and slides at once.
+    """
+    kind = model.joints[joint]
+    driver, scale, shift = joint, 1.0, 0.0
+    if kind.nq == 0:  # a mimic joint is a scaled copy of the coordinate at the same index
+        driver = next(j for j in range(1, model.njoints) if model.joints[j].nv and model.joints[j].idx_v == kind.idx_v)
+        mimic = kind.extract()
+        scale, shift = float(mimic.scaling), float(mimic.offset)
+    elif kind.nv != 1:
+        raise UnsupportedJoint(
+            f"joint {model.names[joint]!r} on the path has {kind.nv} degrees of freedom; chains move joints with one: "
+            f"hold it where the reference has it: Chain(..., locked=[{model.names[joint]!r}])"
+        )
+    subspace = _constant_subspace(model, joint)
+    linear, angular = subspace[:3], subspace[3:]
+    reach, turn = float(np.linalg.norm(linear)), float(np.linalg.norm(angular))
+    if (reach > 0.0) == (turn > 0.0):
+        raise UnsupportedJoint(f"joint {model.names[joint]!r} ({kind.shortname()}) neither only turns nor only slides")
+    # Pinocchio's S of a mimic joint carries the scale, which is kept apart here.
+    axis = (angular if turn else linear) / (max(reach, turn) * np.sign(scale))
+    return Motion(driver, axis, turn > 0.0, scale, shift)
+
+
+def _constant_subspace(model: pin.Model, joint: int) -> NDArray[np.float64]:
+    """S of a joint, after checking that the joint really moves by exp(S x) and so can be a chain's."""
+    data = model.createData()
+    q = pin.neutral(model)
+    pin.forwardKinematics(model, data, q)
+    subspace: NDArray[np.float64] = np.array(data.joints[joint].S).reshape(6)
+    start = data.joints[joint].M.copy()
+    step = np.zeros(model.nv)
+    step[model.joints[joint].idx_v] = 0.3
+    pin.forwardKinematics(model, data, pin.integrate(model, q, step))
+    if not data.joints[joint].M.isApprox(start * pin.exp6(pin.Motion(0.3 * subspace)), 1e-9):
+        raise UnsupportedJoint(f"joint {model.names[joint]!r} does not move along one fixed axis")
+    return subspace
+
+
+def turned_to_z(axis: NDArray[np.float64]) -> pin.SE3:
+    """The rotation whose z axis is ``axis`` (3,), by the shortest turn."""
+    return pin.SE3(pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), axis).matrix(), np.zeros(3))
+
+
+def flat(placement: pin.SE3) -> NDArray[np.float64]:
+    """A placement as (12,): rotation row by row, then translation."""
+    return np.concatenate([placement.rotation.ravel(), placement.translation])
+
+
+def lay_paths(
+    model: pin.Model,
+    frames: Sequence[int],
+    columns: dict[int, int],
+    motions: dict[int, Motion],
+    reference: NDArray[np.float64],
+) -> Paths:
+    """Walk from the world to each frame; joints without a column are folded in where ``reference`` (nq,) has them."""
+    data = model.createData()
+    pin.forwardKinematics(model, data, reference)
+    joints, wiring, ends, tips = [], [], [0], []
+    for frame in frames:
+        placement = pin.SE3.Identity()
+        for joint in list(model.supports[model.frames[frame].parentJoint])[1:]:
+            motion = motions.get(joint)
+            if motion is None:
+                placement = placement * data.liMi[joint]
+                continue
+            turn = turned_to_z(motion.axis)
+            joints.append(
+                np.append(flat(placement * model.jointPlacements[joint] * turn), [motion.scale, motion.shift])
+            )
+            wiring.append((columns[motion.driver], int(motion.rotates)))
+            placement = turn.inverse()
+        ends.append(len(joints))
+        tips.append(flat(placement * model.frames[frame].placement))
+    return Paths(np.array(joints), np.array(wiring, dtype=np.int64), np.array(ends, dtype=np.int64), np.array(tips))

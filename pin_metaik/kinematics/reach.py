@@ -1,0 +1,123 @@
+"""How far a chain can reach at most and at least: a proof that some targets have no solution.
+
+The axis of a rotating joint does not move when that joint turns, so any point of it is a knot that two links share.
+Between knots the chain is a polygon of links whose lengths are known, and no polygon spans more than the sum of its
+links, or less than its longest link less all the others. Where the knots are put on their axes is free: they are put
+where the sum is least. With the whole pose given, the last knot is known too, and the last link drops out: for an arm
+with a spherical wrist this is the distance of the wrist from the shoulder.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.kinematics.limits import Limits
+from pin_metaik.kinematics.paths import Paths
+
+ROUNDING = 1e-9  # m, of a bound that is exact in real numbers
+SWEEPS = 50
+
+
+@dataclass(frozen=True)
+class Link:
+    """From knot u on one axis (u z) to knot v on the next: offset + v axis - u z, give or take ``slack`` (m)."""
+
+    offset: NDArray[np.float64]
+    axis: NDArray[np.float64]
+    slack: float
+
+
+@dataclass(frozen=True)
+class Reach:
+    """Bounds on the distance between a point fixed to the world and one fixed to the tip.
+
+    Attributes:
+        anchor: (3,) the world point.
+        end: (3,) the tip's point, in the tip frame.
+        least: m.
+        most: m.
+    """
+
+    anchor: NDArray[np.float64]
+    end: NDArray[np.float64]
+    least: float
+    most: float
+
+    def gap(self, pose: NDArray[np.float64], distance: float = 0.0, angle: float = 0.0) -> float:
+        """How far (m) every configuration is from a pose (4, 4), at least; 0 proves nothing.
+
+        Args:
+            pose: World pose of the target.
+            distance: How far from it the tip may be, m.
+            angle: By how much it may be turned, rad; ``inf`` when bounds are for the position alone.
+        """
+        span = float(np.linalg.norm(pose[:3, :3] @ self.end + pose[:3, 3] - self.anchor))
+        lever = float(np.linalg.norm(self.end))
+        allowed = ROUNDING + distance + (lever * angle if lever else 0.0)
+        return max(0.0, span - self.most - allowed, self.least - span - allowed)
+
+
+def reach_of(paths: Paths, limits: Limits, tip: int, oriented: bool) -> Reach:
+    """Bounds for one tip; ``oriented`` says that targets fix all of the orientation, not only the position."""
+    links, last, closing = _links(paths, limits, tip)
+    if not links:  # nothing turns: a gantry
+        return Reach(last.offset, np.zeros(3), 0.0, last.slack)
+    # Knot i is on axis i; link 0 only places the first axis in the world.
+    spanning = links[1:] if oriented else [*links[1:], last]
+    knots, spans = _tightened(spanning, len(links))
+    slack = links[0].slack + last.slack + sum(link.slack for link in links[1:])
+    most = float(spans.sum()) + slack
+    least = max(0.0, 2.0 * float(spans.max(initial=0.0)) - float(spans.sum()) - slack)
+    end = closing[:3, :3].T @ (np.array([0.0, 0.0, knots[-1]]) - closing[:3, 3]) if oriented else np.zeros(3)
+    return Reach(links[0].offset + knots[0] * links[0].axis, end, least, most)
+
+
+def _tightened(links: list[Link], count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Knots (count,) that make the links' total length least, and those lengths; any knots would give a true bound.
+
+    A sum of Euclidean norms, minimised by iteratively reweighted least squares (Weiszfeld 1937).
+    """
+    A = np.zeros((len(links), 3, count))
+    b = np.array([link.offset for link in links]).reshape(-1, 3)
+    for i, link in enumerate(links):
+        A[i, 2, i] = -1.0
+        if i + 1 < count:
+            A[i, :, i + 1] = link.axis
+    knots = np.zeros(count)
+    lengths = np.linalg.norm(b, axis=1)
+    for _ in range(SWEEPS):
+        weights = (1.0 / np.sqrt(np.maximum(lengths, 1e-9)))[:, None]
+        knots = np.linalg.lstsq((weights[:, None] * A).reshape(-1, count), -(weights * b).ravel(), rcond=1e-9)[0]
+        lengths = np.linalg.norm(A @ knots + b, axis=1)
+    return knots, lengths
+
+
+def _links(paths: Paths, limits: Limits, tip: int) -> tuple[list[Link], Link, NDArray[np.float64]]:
+    """The link before each rotating joint, the one from the last to the tip, and that one's placement (4, 4)."""
+    links = []
+    placement = np.eye(4)
+    travel = np.zeros(3)
+    slack = 0.0
+    for s in range(paths.ends[tip], paths.ends[tip + 1]):
+        row, (column, rotates) = paths.joints[s], paths.wiring[s]
+        placement = placement @ _matrix(row[:12])
+        if rotates:
+            links.append(Link(placement[:3, 3] + travel, placement[:3, 2], slack))
+            placement, travel, slack = np.eye(4), np.zeros(3), 0.0
+        else:
+            ends = row[12] * np.array([limits.lower[column], limits.upper[column]]) + row[13]
+            travel = travel + ends.mean() * placement[:3, 2]
+            slack += 0.5 * float(abs(ends[1] - ends[0]))
+    placement = placement @ _matrix(paths.tips[tip])
+    placement[:3, 3] += travel
+    return links, Link(placement[:3, 3], np.zeros(3), slack), placement
+
+
+def _matrix(flat: NDArray[np.float64]) -> NDArray[np.float64]:
+    matrix = np.eye(4)
+    matrix[:3, :3] = flat[:9].reshape(3, 3)
+    matrix[:3, 3] = flat[9:12]
+    return matrix
