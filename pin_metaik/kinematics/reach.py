@@ -88,8 +88,8 @@ def _tightened(links: list[Link], count: int) -> tuple[NDArray[np.float64], NDAr
             A[i, :, i + 1] = link.axis
     knots = np.zeros(count)
     lengths = np.linalg.norm(b, axis=1)
-    for _ in range(SWEEPS):
-        weights = (1.0 / np.sqrt(np.maximum(lengths, 1e-9)))[:, None]
+    for sweep in range(SWEEPS):  # the floor falls slowly: a link that is short too early would stay so
+        weights = (1.0 / np.sqrt(np.maximum(lengths, 0.7**sweep)))[:, None]
         knots = np.linalg.lstsq((weights[:, None] * A).reshape(-1, count), -(weights * b).ravel(), rcond=1e-9)[0]
         lengths = np.linalg.norm(A @ knots + b, axis=1)
     return knots, lengths

@@ -1,0 +1,150 @@
+"""Chains: what they take from a model, x <-> q both ways, and errors where the input enters."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from numpy.testing import assert_allclose
+
+import pin_metaik as mik
+from pin_metaik.errors import (
+    FixedFrame,
+    FrameNotFound,
+    InvalidBounds,
+    InvalidConfiguration,
+    UnknownName,
+    UnsupportedJoint,
+)
+from tests.robots_under_test import ARMS, CATALOGUE, chain_of
+
+
+@pytest.mark.parametrize("name", CATALOGUE + ARMS)
+def test_coordinates_go_to_a_configuration_and_back(name: str) -> None:
+    chain = chain_of(name)
+    X = chain.box.sample(np.random.default_rng(0), 20)
+    assert_allclose(chain.x(chain.q(X)), X, atol=1e-12)  # an angle from its cos and sin
+    assert pin.isNormalized(chain.model, chain.q(X)[0], 1e-9)
+
+
+@pytest.mark.parametrize("name", CATALOGUE + ARMS)
+def test_integrating_a_step_in_pinocchio_is_adding_it_to_x(name: str) -> None:
+    chain = chain_of(name)
+    rng = np.random.default_rng(1)
+    x, dx = 0.5 * chain.box.sample(rng, 1)[0], 0.1 * rng.standard_normal(chain.n)
+    v = np.zeros(chain.model.nv)
+    v[[chain.model.joints[int(j)].idx_v for j in chain.coordinates.joints]] = dx
+    assert_allclose(pin.integrate(chain.model, chain.q(x), v), chain.q(x + dx), atol=1e-12)
+
+
+def test_a_continuous_joint_has_no_limits_and_is_sampled_over_one_turn() -> None:
+    chain = chain_of("kinova")
+    assert chain.limits.periodic.tolist() == [True, False, False, True, False, True]
+    assert_allclose(chain.box.width[chain.limits.periodic], 2 * np.pi)
+
+
+def test_a_prismatic_joint_is_a_coordinate_in_metres() -> None:
+    chain = chain_of("tiago")
+    assert chain.names[0] == "torso_lift_joint"
+    assert not chain.limits.rotates[0]
+    assert chain.limits.rotates[1:].all()
+
+
+MIMIC = """
+<robot name="mimic"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
+<joint name="one" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/>
+  <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+<joint name="two" type="revolute"><parent link="b"/><child link="c"/><origin xyz="1 0 0"/><axis xyz="0 0.6 0.8"/>
+  <limit lower="-3" upper="3" effort="1" velocity="1"/><mimic joint="one" multiplier="-2" offset="0.3"/></joint>
+<joint name="three" type="prismatic"><parent link="c"/><child link="d"/><origin xyz="0.5 0 0"/><axis xyz="1 0 0"/>
+  <limit lower="-1" upper="1" effort="1" velocity="1"/><mimic joint="one" multiplier="0.5"/></joint></robot>
+"""
+
+
+def test_mimic_joints_follow_as_scaled_copies() -> None:
+    chain = mik.Chain(pin.buildModelFromXML(MIMIC, True), "d")
+    assert chain.names == ("one",)
+    for x in (-0.7, 0.0, 0.9):
+        assert_allclose(chain.poses([[x]])[0, 0], chain.placements(chain.q([x]))[0].homogeneous, atol=1e-12)
+    goal = chain.placements(chain.q([0.4]))[0]
+    assert_allclose(mik.solve_ik(chain, goal).x, [0.4], atol=1e-6)
+
+
+def test_locked_joints_stay_at_the_reference() -> None:
+    model = mik.load_robot("panda").model
+    reference = pin.neutral(model)
+    reference[2] = 0.5
+    chain = mik.Chain(model, "panda_hand_tcp", locked=["panda_joint3"], reference=reference)
+    assert "panda_joint3" not in chain.names
+    x = chain.box.sample(np.random.default_rng(0), 1)[0]
+    assert chain.q(x)[2] == 0.5
+    assert_allclose(chain.poses([x])[0, 0], chain.placements(chain.q(x))[0].homogeneous, atol=1e-12)
+
+
+def test_a_free_flyer_on_the_path_can_be_locked() -> None:
+    model = mik.load_robot("ur5", free_flyer=True).model
+    with pytest.raises(UnsupportedJoint, match=r"6 degrees of freedom.*locked=\['root_joint'\]"):
+        mik.Chain(model, "tool0")
+    chain = mik.Chain(model, "tool0", locked=["root_joint"])
+    assert chain.n == 6
+    x = chain.box.sample(np.random.default_rng(0), 1)[0]
+    assert_allclose(chain.poses([x])[0, 0], chain.placements(chain.q(x))[0].homogeneous, atol=1e-12)
+
+
+def test_several_frames_share_coordinates() -> None:
+    chain = mik.Chain(mik.load_robot("talos").model, ["gripper_left_base_link", "gripper_right_base_link"])
+    assert chain.n == 16  # two torso joints shared by two arms of seven
+    X = chain.box.sample(np.random.default_rng(0), 10)
+    for x, poses in zip(X, chain.poses(X), strict=True):
+        for pose, placement in zip(poses, chain.placements(chain.q(x)), strict=True):
+            assert_allclose(pose, placement.homogeneous, atol=1e-12)
+
+
+def test_a_helical_joint_and_a_composite_one_are_refused_by_what_they_do() -> None:
+    helical = pin.Model()
+    helical.addJoint(0, pin.JointModelHZ(0.1), pin.SE3.Identity(), "screw")
+    helical.addFrame(pin.Frame("tip", 1, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME))
+    with pytest.raises(UnsupportedJoint, match="'screw'"):
+        mik.Chain(helical, "tip")
+
+
+def test_errors_name_what_would_have_worked() -> None:
+    model = mik.load_robot("ur5").model
+    with pytest.raises(FrameNotFound, match="did you mean 'tool0'"):
+        mik.Chain(model, "tool00")
+    with pytest.raises(FixedFrame, match="no joint moves frame 'world'"):
+        mik.Chain(model, "world")
+    with pytest.raises(UnknownName, match="did you mean 'elbow_joint'"):
+        mik.Chain(model, "tool0", locked=["elbow"])
+    with pytest.raises(InvalidBounds, match=r"'elbow_joint' has its lower limit 1.0 above its upper limit -1.0"):
+        mik.Chain(model, "tool0", limits={"elbow_joint": (1.0, -1.0)})
+    with pytest.raises(InvalidBounds, match="'elbow'"):
+        mik.Chain(model, "tool0", limits={"elbow": (0.0, 1.0)})
+    with pytest.raises(InvalidBounds, match="NaN"):
+        mik.Chain(model, "tool0", limits={"elbow_joint": (np.nan, 1.0)})
+    with pytest.raises(InvalidConfiguration, match=r"shape \(6,\), got \(5,\)"):
+        mik.Chain(model, "tool0", reference=np.zeros(5))
+
+
+def test_a_sliding_joint_without_limits_is_refused_when_a_search_needs_them() -> None:
+    model = pin.Model()
+    model.addJoint(0, pin.JointModelPX(), pin.SE3.Identity(), "rail")
+    model.addFrame(pin.Frame("cart", 1, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME))
+    chain = mik.Chain(model, "cart")
+    with pytest.raises(InvalidBounds, match=r"'rail'.*limits=\{'rail': \(lower, upper\)\}"):
+        mik.solve_ik(chain, [0.5, 0.0, 0.0])
+    assert mik.solve_ik(mik.Chain(model, "cart", limits={"rail": (-1, 1)}), [0.5, 0.0, 0.0]).success
+
+
+def test_an_unlimited_hinge_is_searched_over_one_turn() -> None:
+    model = pin.Model()
+    model.addJoint(0, pin.JointModelRZ(), pin.SE3.Identity(), "hinge")
+    model.addFrame(pin.Frame("tip", 1, 0, pin.SE3(np.eye(3), np.array([1.0, 0, 0])), pin.FrameType.OP_FRAME))
+    chain = mik.Chain(model, "tip")
+    assert chain.limits.periodic.all()
+    assert mik.solve_ik(chain, [0.0, -1.0, 0.0]).success
+
+
+def test_the_model_is_never_written_to() -> None:
+    model = mik.load_robot("panda").model
+    before = model.copy()
+    mik.solve_ik(mik.Chain(model, "panda_hand_tcp", locked=["panda_joint1"]), [0.4, 0.0, 0.5])
+    assert model == before

@@ -1,0 +1,81 @@
+"""The compiled loops equal Pinocchio."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from numpy.testing import assert_allclose
+
+import pin_metaik as mik
+from tests.robots_under_test import ARMS, CATALOGUE, chain_of
+
+EQUAL = 1e-12  # a dozen 3x3 products of entries of order one, and lengths of order a metre
+
+
+@pytest.mark.parametrize("name", CATALOGUE + ARMS)
+def test_population_poses_equal_pinocchio(name: str) -> None:
+    chain = chain_of(name)
+    X = chain.box.sample(np.random.default_rng(0), 50)
+    scale = 1.0 if name != "puma_offset" else 60.0  # its lengths are tens of units
+    for pose, x in zip(chain.poses(X)[:, 0], X, strict=True):
+        assert_allclose(pose, chain.placements(chain.q(x))[0].homogeneous, atol=EQUAL * scale)
+
+
+@pytest.mark.parametrize("name", CATALOGUE + ARMS)
+def test_population_costs_equal_pinocchio(name: str) -> None:
+    chain = chain_of(name)
+    X = chain.box.sample(np.random.default_rng(1), 50)
+    goal = chain.placements(chain.q(X[0]))[0]
+    problem = mik.IKProblem.of(chain, mik.Target(goal, position_weight=2.0, orientation_weight=0.5))
+    costs = problem.costs(X)
+    scale = 1.0 if name != "puma_offset" else 60.0
+    for cost, x in zip(costs, X, strict=True):
+        error = goal.actInv(chain.placements(chain.q(x))[0])
+        expected = 2.0 * np.linalg.norm(error.translation) + 0.5 * np.linalg.norm(pin.log3(error.rotation))
+        # log3 loses half the digits within 1e-4 of a half turn, which no sample here comes near.
+        assert_allclose(cost, expected, atol=3 * EQUAL * scale)
+
+
+def test_the_rotation_error_is_exact_near_zero_and_near_half_a_turn() -> None:
+    model = pin.Model()
+    model.addJoint(0, pin.JointModelRevoluteUnaligned(0.36, 0.48, 0.8), pin.SE3.Identity(), "hinge")
+    model.addFrame(pin.Frame("tip", 1, 0, pin.SE3.Random(), pin.FrameType.OP_FRAME))
+    chain = mik.Chain(model, "tip")
+    problem = mik.IKProblem.of(chain, mik.Target.facing(chain.placements(chain.q([0.0]))[0].rotation))
+    angles = np.array([1e-12, 1e-9, 1e-6, 1e-3, 1.0, 3.0, np.pi - 1e-3, np.pi - 1e-6, np.pi - 1e-9])
+    assert_allclose(problem.costs(angles[:, None]), angles, atol=1e-14, rtol=1e-14)
+    assert_allclose(problem.costs(-angles[:, None]), angles, atol=1e-14, rtol=1e-14)
+
+
+def reference_descent(problem: mik.IKProblem, x: np.ndarray, steps: int) -> np.ndarray:
+    """The damped least squares of the kernel written with Pinocchio's FK, frame Jacobian and Jlog3."""
+    chain, target = problem.chain, problem.targets[0]
+    model, data, limits = chain.model, chain.model.createData(), chain.limits
+    goal, frame = pin.SE3(target.pose), chain.frame_ids[0]
+    columns = [model.joints[int(j)].idx_v for j in chain.coordinates.joints]
+    for _ in range(steps):
+        q = chain.q(x)
+        J = pin.computeFrameJacobian(model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)[:, columns]
+        error = goal.actInv(pin.updateFramePlacement(model, data, frame))
+        r = np.concatenate([error.translation, pin.log3(error.rotation)])
+        to_goal = goal.rotation.T
+        J = np.vstack([to_goal @ J[:3], pin.Jlog3(error.rotation) @ error.rotation.T @ to_goal @ J[3:]])
+        slope = J.T @ r
+        blocked = ((x <= limits.lower) & (slope > 0)) | ((x >= limits.upper) & (slope < 0))
+        J[:, blocked] = 0.0
+        damping = 0.05 * (r @ r) + 1e-9
+        x = limits.clip(x - J.T @ np.linalg.solve(J @ J.T + damping * np.eye(6), r))
+    return x
+
+
+@pytest.mark.parametrize("name", [n for n in CATALOGUE + ARMS if n not in ("puma_offset", "rv7fl_paper", "cobra600")])
+def test_the_descent_takes_the_steps_that_pinocchio_gives(name: str) -> None:
+    chain = chain_of(name)
+    rng = np.random.default_rng(2)
+    X = chain.box.sample(rng, 10)
+    for x_goal in X:
+        problem = mik.IKProblem.of(chain, chain.placements(chain.q(x_goal))[0])
+        start = chain.limits.clip(x_goal + 0.1 * rng.standard_normal(chain.n))
+        for steps in (1, 2):  # so close, every step improves: the best is the last
+            refined = mik.DLS().refine(problem, start[None], steps + 1)
+            # Two steps through a matrix of condition up to 1e8 near singularities.
+            assert_allclose(refined.x, reference_descent(problem, start, steps), atol=1e-6)
