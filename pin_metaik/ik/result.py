@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
@@ -49,8 +49,8 @@ class IKResult:
     orientation_error: float
     evaluations: int
     seconds: float
-    problem: IKProblem
-    trace: NDArray[np.float64] | None = None
+    problem: IKProblem = field(repr=False)
+    trace: NDArray[np.float64] | None = field(default=None, repr=False)
 
     @property
     def success(self) -> bool:

@@ -189,9 +189,11 @@ def _entry_limits(model: pin.Model) -> tuple[NDArray[np.float64], NDArray[np.flo
 
 
 def _frame_id(model: pin.Model, name: str) -> int:
-    if not model.existFrame(name):
-        raise FrameNotFound(str(name), [frame.name for frame in model.frames if frame.name != "universe"])
-    return int(model.getFrameId(name))
+    """Id of a frame; of a joint and a link of the same name, the link."""
+    ids = [i for i, frame in enumerate(model.frames) if frame.name == name]
+    if not ids:
+        raise FrameNotFound(str(name), {frame.name for frame in model.frames} - {"universe"})
+    return next((i for i in ids if model.frames[i].type == pin.FrameType.BODY), ids[0])
 
 
 def _joint_id(model: pin.Model, name: str) -> int:
