@@ -13,16 +13,22 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 F = TypeVar("F", bound=Callable[..., Any])
 
-# Machine code is kept on disk; other threads may run meanwhile; division by zero gives inf as in C; a b + c may be
-# one rounding instead of two.
-OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
+# Machine code is kept on disk; other threads may run meanwhile; division by zero gives inf as in C.
+OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+# Sums may be taken in another order and a b + c be rounded once; infinities and NaN keep their meaning.
+LOOSE = {"contract", "reassoc", "nsz", "arcp"}
 
 
 def jit(signature: str) -> Callable[[F], F]:
     """Compile a function of this numba signature when its module is imported, or read it from the cache."""
-    return cast(Callable[[F], F], numba.njit(signature, **OPTIONS))
+    return cast(Callable[[F], F], numba.njit(signature, fastmath=LOOSE, **OPTIONS))
 
 
 def inline(function: F) -> F:
-    """A part of a loop: compiled with and into the loop that calls it."""
-    return cast(F, numba.njit(**OPTIONS)(function))
+    """A part of a loop: compiled into the loop that calls it, with what is constant there."""
+    return cast(F, numba.njit(fastmath=LOOSE, forceinline=True, **OPTIONS)(function))
+
+
+def exact(function: F) -> F:
+    """A part of a loop whose roundings must come in the order written."""
+    return cast(F, numba.njit(fastmath={"contract"}, forceinline=True, **OPTIONS)(function))

@@ -43,12 +43,13 @@ class Ledger:
         """Why a search ended that has not solved its problem."""
         if self._problem.gap > 0.0:
             return IKStatus.UNREACHABLE
-        return IKStatus.STOPPED if self.interrupted or self._late() else IKStatus.OUT_OF_TOLERANCE
+        timed = self._budget.seconds is not None and self.left() > 0
+        return IKStatus.STOPPED if self.interrupted or timed else IKStatus.OUT_OF_TOLERANCE
 
     def left(self, share: float = 1.0) -> int:
         """Evaluations left of this share of the budget."""
         total = self._budget.evaluations
-        return ENDLESS if total is None else max(0, int(share * total) - self.spent)
+        return ENDLESS if total is None else max(0, math.ceil(share * total) - self.spent)
 
     def over(self, share: float = 1.0) -> bool:
         """Whether the search is over: solved, interrupted, or this share of the budget spent."""

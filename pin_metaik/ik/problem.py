@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -34,11 +34,13 @@ class IKProblem:
         chain: The chain.
         targets: One for each of its frames, in the chain's order.
         tasks: (T, 26) the targets as the kernels take them.
+        rows: (m, 2) the (frame, axis) pairs that count: three translations, three rotations, less the free ones.
     """
 
     chain: Chain
     targets: tuple[Target, ...]
     tasks: NDArray[np.float64]
+    rows: NDArray[np.int64]
 
     @staticmethod
     def of(chain: Chain, target: TargetLike | Sequence[TargetLike]) -> IKProblem:
@@ -64,7 +66,8 @@ class IKProblem:
             targets = tuple(Target.of(one) for one in target)
         if several or targets[0].frame is not None:
             targets = _match(chain.frames, targets)
-        return IKProblem(chain, targets, np.array([one.task for one in targets]))
+        tasks = targets[0].task[None] if len(targets) == 1 else np.array([one.task for one in targets])
+        return IKProblem(chain, targets, tasks, _rows(tuple([one.counts for one in targets])))
 
     @property
     def limits(self) -> Limits:
@@ -75,11 +78,6 @@ class IKProblem:
     def box(self) -> Box:
         """The box to sample and search in."""
         return self.chain.box
-
-    @cached_property
-    def rows(self) -> NDArray[np.int64]:
-        """(m, 2) the (frame, axis) pairs that count: three translations, three rotations, less the free ones."""
-        return np.ascontiguousarray(np.argwhere(np.isfinite(self.tasks[:, 12:18])))
 
     @cached_property
     def good_enough(self) -> float:
@@ -117,6 +115,12 @@ class IKProblem:
     def accepts(self, q: NDArray[np.float64]) -> bool:
         """Whether q (nq,) is a solution."""
         return self.verdict(q).accepted
+
+
+@cache
+def _rows(counts: tuple[tuple[bool, ...], ...]) -> NDArray[np.int64]:
+    """The (frame, axis) pairs at which ``counts`` is true."""
+    return np.ascontiguousarray(np.argwhere(np.array(counts)))
 
 
 def _match(frames: tuple[str, ...], targets: tuple[Target, ...]) -> tuple[Target, ...]:

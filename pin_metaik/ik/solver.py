@@ -24,6 +24,7 @@ ELITE = 8  # points of a seeder's search that are refined
 SEEDER_SHARE = 0.25  # of the budget, for one round of the seeder before its elite is refined
 RESTART_SHARE = 0.5  # of the budget, for restarts before the automatic solver turns to a seeder
 FALLBACK = "mtde"  # ... which is this one
+RESERVE = 0.05  # of the budget, to settle down at the nearest pose when none is near enough
 
 Rng: TypeAlias = int | np.random.Generator | None
 
@@ -51,6 +52,8 @@ class IKSolver:
     budget: Budget = field(default=Budget(evaluations=50_000))
     starts: int | None = None
     trace: bool = False
+    _seeder: Metaheuristic | None = field(init=False, repr=False)
+    _refiner: Refiner | None = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Check names and settings where they enter.
@@ -60,12 +63,12 @@ class IKSolver:
             InvalidSetting: Neither a seeder nor a refiner, or fewer than one start.
             InvalidBudget: A budget that never ends.
         """
-        if self.seeder is not None and self.seeder != "auto":
-            make(self.seeder)
-        if self.refiner is not None:
-            make_refiner(self.refiner)
-        elif self.seeder is None or self.seeder == "auto":
+        seeder = None if self.seeder is None else make(FALLBACK if self.seeder == "auto" else self.seeder)
+        refiner = None if self.refiner is None else make_refiner(self.refiner)
+        if refiner is None and (seeder is None or self.seeder == "auto"):
             raise InvalidSetting("without a refiner name a seeder, e.g. IKSolver('gwo', None)")
+        object.__setattr__(self, "_seeder", seeder)
+        object.__setattr__(self, "_refiner", refiner)
         if self.starts is not None and self.starts < 1:
             raise InvalidSetting(f"starts is at least 1 or None, got {self.starts}")
         if not self.budget.ends:
@@ -76,16 +79,19 @@ class IKSolver:
         began = perf_counter()
         chain = problem.chain
         base = chain.reference if q0 is None else chain.configuration(q0)
-        x0 = chain.limits.clip(chain.x(base))
+        x0 = chain.x(base)
         ledger = Ledger(problem, self.budget, began, x0)
         try:
-            if self.seeder is None or self.seeder == "auto":
-                self._restart(problem, x0, rng, ledger)
-            if self.seeder is not None and not ledger.over() and problem.gap == 0.0:
-                self._seed(problem, None if q0 is None else x0[None], rng, ledger)
+            if self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
+                self._restart(problem, self._refiner, x0, rng, ledger)
+            if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
+                self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
+            if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None:
+                ledger.add(self._refiner.settle(problem, ledger.x, ledger.left()))
         except KeyboardInterrupt:
             ledger.interrupted = True
-        q = chain.q(ledger.x, base)
+        q = base.copy()
+        chain.coordinates.write(ledger.x, q)
         verdict = problem.verdict(q)
         return IKResult(
             q=q,
@@ -98,30 +104,39 @@ class IKSolver:
             trace=np.concatenate(ledger.traces) if ledger.traces else None,
         )
 
-    def _restart(self, problem: IKProblem, x0: NDArray[np.float64], rng: Rng, ledger: Ledger) -> None:
-        """Refine from x0 (n,), then from random starts."""
-        refiner = make_refiner(self.refiner or DLS())
-        share = 1.0 if self.seeder is None else RESTART_SHARE
+    def _restart(self, problem: IKProblem, refiner: Refiner, x0: NDArray[np.float64], rng: Rng, ledger: Ledger) -> None:
+        """Refine from x0 (n,), then from random starts; the automatic solver also from an atlas of the chain."""
+        share = 1.0 - RESERVE if self._seeder is None else RESTART_SHARE
+        refine = refiner.refine
+        if self._seeder is not None and isinstance(refiner, DLS):
+            refine = refiner.refine_anywhere
         for starts in start_batches(problem.chain, x0, rng, self.starts):
-            ledger.add(refiner.refine(problem, starts, ledger.left(share)))
+            ledger.add(refine(problem, starts, ledger.left(share)))
             if ledger.over(share) or problem.gap > 0.0:
                 return
+            refine = refiner.refine
 
-    def _seed(self, problem: IKProblem, seeds: NDArray[np.float64] | None, rng: Rng, ledger: Ledger) -> None:
+    def _seed(
+        self,
+        problem: IKProblem,
+        seeder: Metaheuristic,
+        seeds: NDArray[np.float64] | None,
+        rng: Rng,
+        ledger: Ledger,
+    ) -> None:
         """Search with the metaheuristic; with a refiner in rounds, each refining the elite of its search."""
-        seeder = make(FALLBACK if self.seeder is None or self.seeder == "auto" else self.seeder)
         generator = np.random.default_rng(DEFAULT_SEED if rng is None else rng)
-        share = 1.0 if self.refiner is None else SEEDER_SHARE
+        share = 1.0 if self._refiner is None else SEEDER_SHARE
         while True:
             budget = ledger.slice(share)
             found = minimize(
                 problem.costs, problem.box, seeder, budget, generator, seeds=seeds, trace=self.trace, keep=ELITE
             )
             ledger.add_search(found)
-            if self.refiner is None:
+            if self._refiner is None:
                 return
-            ledger.add(make_refiner(self.refiner).refine(problem, found.elite, ledger.left()))
-            if ledger.over() or problem.gap > 0.0:
+            ledger.add(self._refiner.refine(problem, found.elite, ledger.left(1.0 - RESERVE)))
+            if ledger.over(1.0 - RESERVE) or problem.gap > 0.0:
                 return
             seeds = None
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cache
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -30,7 +31,7 @@ class Target:
     error is the rotation vector log(R_target' R).
 
     Attributes:
-        pose: World pose the frame shall reach: ``pin.SE3`` or (4, 4); kept as (4, 4).
+        pose: World pose the frame shall reach: ``pin.SE3`` or (4, 4); kept as ``pin.SE3``.
         frame: Which frame of the chain; ``None`` for a chain's only one.
         position_tolerance: m.
         orientation_tolerance: rad.
@@ -42,45 +43,45 @@ class Target:
             nothing is left that counts.
     """
 
-    pose: NDArray[np.float64]
+    pose: pin.SE3
     frame: str | None = None
     position_tolerance: Tolerance = DEFAULT_TOLERANCE
     orientation_tolerance: Tolerance = DEFAULT_TOLERANCE
     position_weight: float = 1.0
     orientation_weight: float = 1.0
     task: NDArray[np.float64] = field(init=False, repr=False)  # (26,) as the kernels take it
+    counts: tuple[bool, ...] = field(init=False, repr=False)  # which of the six axes are not free
 
     def __post_init__(self) -> None:
         """Check everything once, where it enters."""
         pose = as_pose(self.pose)
         object.__setattr__(self, "pose", pose)
-        task = np.empty(26)
-        rotation = pose[:3, :3].T
-        task[:9] = rotation.ravel()
-        task[9:12] = -(rotation @ pose[:3, 3])
-        task[12:15], task[24] = _slack("position_tolerance", self.position_tolerance)
-        task[15:18], task[25] = _slack("orientation_tolerance", self.orientation_tolerance)
-        task[18:21] = _weight("position_weight", self.position_weight)
-        task[21:24] = _weight("orientation_weight", self.orientation_weight)
-        if FREE == self.position_tolerance == self.orientation_tolerance or np.isinf(task[12:18]).all():
+        slack, near = _slack("position_tolerance", self.position_tolerance)
+        lean, aligned = _slack("orientation_tolerance", self.orientation_tolerance)
+        if FREE == max(slack) == min(slack) == min(lean):
             raise InvalidTarget("this target frees every axis: nothing is left to reach")
-        object.__setattr__(self, "task", task)
+        weight = _weight("position_weight", self.position_weight)
+        turn = _weight("orientation_weight", self.orientation_weight)
+        (a, b, c, x), (d, e, f, y), (g, h, i, z), _ = pose.homogeneous.tolist()
+        # The world in the target frame, slack and weight of each axis, radii.
+        world = (a, d, g, b, e, h, c, f, i, -a * x - d * y - g * z, -b * x - e * y - h * z, -c * x - f * y - i * z)
+        weights = (weight, weight, weight, turn, turn, turn)
+        object.__setattr__(self, "task", np.array(world + slack + lean + weights + (near, aligned)))
+        object.__setattr__(self, "counts", _finite(slack + lean))
 
     @staticmethod
     def at(xyz: ArrayLike, *, frame: str | None = None, tolerance: Tolerance = DEFAULT_TOLERANCE) -> Target:
         """A position (3,) in m, at any orientation."""
-        pose = np.eye(4)
-        pose[:3, 3] = as_position(xyz)
+        pose = pin.SE3(np.eye(3), as_position(xyz))
         return Target(pose, frame, position_tolerance=tolerance, orientation_tolerance=FREE)
 
     @staticmethod
     def facing(rotation: ArrayLike, *, frame: str | None = None, tolerance: Tolerance = DEFAULT_TOLERANCE) -> Target:
         """An orientation (3, 3), anywhere."""
-        matrix = np.asarray(rotation)
+        matrix = np.asarray(rotation, dtype=float)
         if matrix.shape != (3, 3):
             raise InvalidTarget(f"an orientation has shape (3, 3), got {matrix.shape}")
-        pose = np.eye(4)
-        pose[:3, :3] = matrix
+        pose = pin.SE3(matrix, np.zeros(3))
         return Target(pose, frame, position_tolerance=FREE, orientation_tolerance=tolerance)
 
     @staticmethod
@@ -107,11 +108,9 @@ class Target:
 
     def judge(self, placement: pin.SE3) -> Judgement:
         """How far a world placement is from this target, and whether that is close enough; by Pinocchio."""
-        rotation, offset = self.task[:9].reshape(3, 3), self.task[9:12]
-        away = (rotation @ placement.translation + offset).tolist()
-        turn = pin.log3(rotation @ placement.rotation).tolist()
-        position, near = _measure(away, self.position_tolerance)
-        orientation, aligned = _measure(turn, self.orientation_tolerance)
+        error = self.pose.actInv(placement)
+        position, near = _measure(error.translation.tolist(), self.position_tolerance)
+        orientation, aligned = _measure(pin.log3(error.rotation).tolist(), self.orientation_tolerance)
         return Judgement(position, orientation, near and aligned)
 
 
@@ -138,14 +137,20 @@ def _radius(tolerance: Tolerance) -> float:
     return math.hypot(*tolerance) if isinstance(tolerance, tuple) else tolerance
 
 
-def _slack(name: str, tolerance: Tolerance) -> tuple[NDArray[np.float64] | float, float]:
+@cache
+def _finite(slack: tuple[float, ...]) -> tuple[bool, ...]:
+    return tuple(s < FREE for s in slack)
+
+
+@cache
+def _slack(name: str, tolerance: Tolerance) -> tuple[tuple[float, float, float], float]:
     """A tolerance as the kernels take it, a little tighter than asked: slack per axis, and radius beyond the slack."""
     given = tolerance if isinstance(tolerance, tuple) else (tolerance,)
     if len(given) not in (1, 3) or not all(isinstance(t, (int, float)) and t > 0.0 for t in given):
         raise InvalidTarget(f"{name} is a number above 0 or a tuple of three (inf frees an axis), got {tolerance!r}")
     if len(given) == 1:
-        return (FREE, FREE) if given[0] == FREE else (0.0, 0.999 * given[0])
-    return np.multiply(given, 0.9), 0.099 * min(given)
+        return ((FREE,) * 3, FREE) if given[0] == FREE else ((0.0,) * 3, 0.999 * given[0])
+    return (0.9 * given[0], 0.9 * given[1], 0.9 * given[2]), 0.099 * min(given)
 
 
 def _weight(name: str, weight: float) -> float:

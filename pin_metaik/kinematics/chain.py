@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 
@@ -10,7 +11,8 @@ import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.errors import FixedFrame, FrameNotFound, InvalidConfiguration, UnknownName
-from pin_metaik.kinematics.coordinates import Coordinates
+from pin_metaik.kinematics.atlas import LEAF, SEED, Atlas, chart
+from pin_metaik.kinematics.coordinates import Coordinates, consecutive
 from pin_metaik.kinematics.limits import Limits, finite_or_infinite
 from pin_metaik.kinematics.loading import load_kernels
 from pin_metaik.kinematics.paths import lay_paths, motion_of
@@ -125,6 +127,12 @@ class Chain:
         """
         return self.limits.box()
 
+    @cached_property
+    def atlas(self) -> Atlas:
+        """Sampled configurations to look a pose up in; made on first use, in about 5 ms, always the same."""
+        X = self.box.sample(np.random.default_rng(SEED), LEAF * LEAF)
+        return chart(X, self.poses(X))
+
     def sample(self, count: int, seed: tuple[int, ...]) -> NDArray[np.float64]:
         """Coordinates (count, n) drawn uniformly from the box; the same for the same seed, and then at no cost."""
         if (count, seed) not in self._samples:
@@ -142,7 +150,7 @@ class Chain:
     def placements(self, q: NDArray[np.float64]) -> list[pin.SE3]:
         """World placement of each frame at configuration q (nq,), by Pinocchio."""
         pin.forwardKinematics(self.model, self.data, q)
-        return [pin.updateFramePlacement(self.model, self.data, f).copy() for f in self.frame_ids]
+        return [pin.SE3(pin.updateFramePlacement(self.model, self.data, f)) for f in self.frame_ids]
 
     def poses(self, X: ArrayLike) -> NDArray[np.float64]:
         """World poses (k, T, 4, 4) of the T frames at the coordinates X (k, n), by the compiled loop."""
@@ -166,14 +174,14 @@ def as_configuration(model: pin.Model, q: ArrayLike) -> NDArray[np.float64]:
         InvalidConfiguration: If its length is not nq or an entry is not finite.
     """
     try:
-        configuration = np.array(q, dtype=float)
+        configuration = np.asarray(q, dtype=float)
     except (TypeError, ValueError):
         raise InvalidConfiguration(f"a configuration is {model.nq} numbers, got {q!r}") from None
     if configuration.shape != (model.nq,):
         raise InvalidConfiguration(
             f"a configuration of {model.name!r} has shape ({model.nq},), got {configuration.shape}"
         )
-    if not np.isfinite(configuration).all():
+    if not math.isfinite(np.add.reduce(configuration)):
         raise InvalidConfiguration(f"a configuration has finite entries, got {configuration}")
     return configuration
 
@@ -207,7 +215,11 @@ def _coordinates(model: pin.Model, drivers: list[int]) -> Coordinates:
     entry = np.array([model.joints[j].idx_q for j in drivers], dtype=np.int64)
     circular = np.array([model.joints[j].nq == 2 for j in drivers], dtype=bool)
     return Coordinates(
-        np.array(drivers, dtype=np.int64), columns[~circular], entry[~circular], columns[circular], entry[circular]
+        np.array(drivers, dtype=np.int64),
+        consecutive(columns[~circular]),
+        consecutive(entry[~circular]),
+        columns[circular],
+        entry[circular],
     )
 
 

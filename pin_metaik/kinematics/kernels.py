@@ -1,7 +1,7 @@
-"""The compiled loops: poses of a population, costs of a population, damped least squares with restarts.
+"""The compiled loops over populations, and what they are made of: forward kinematics, errors and their Jacobian.
 
-Compiling a single forward kinematics gains nothing over Pinocchio (0.8 us);
-compiling whole loops does, because the call from Python (1-3 us) is then paid once.
+Compiling a single forward kinematics gains nothing over Pinocchio (0.8 us); compiling whole loops does, because the
+call from Python (1-3 us) is then paid once.
 
 Arrays every kernel takes (made by ``Chain`` and ``IKProblem``; S joints on all paths, T tips, n coordinates):
 
@@ -11,10 +11,12 @@ Arrays every kernel takes (made by ``Chain`` and ``IKProblem``; S joints on all 
 * ``ends`` (T + 1,): joints ``ends[t]:ends[t + 1]`` lead from the world to tip t; paths may share columns.
 * ``tips`` (T, 12): placement of each tip in its last joint frame.
 * ``tasks`` (T, 26): the world in the target frame (12), slack per axis (6), weight per axis (6), tolerances (m, rad).
-* ``rows`` (m, 2): which (tip, axis) pairs count: weight above zero and slack finite.
+* ``rows`` (m, 2): which (tip, axis) pairs count: slack finite.
 
 Seen from the target frame, a solved tip stands at the identity: position error p, orientation error log(R), and no
 target left to subtract. ``x`` is (n,), a population ``X`` is (k, n).
+
+Numba looks at one file to decide whether its cache is stale: after changing a part that another file uses, touch both.
 """
 
 from __future__ import annotations
@@ -23,15 +25,32 @@ import math
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, inline, jit
+from pin_metaik.compiled import Floats, Ints, exact, inline, jit
 
 PATHS = "f8[:,::1], i8[:,::1], i8[::1], f8[:,::1]"  # joints, wiring, ends, tips
-TASKS = "f8[:,::1], i8[:,::1]"  # tasks, rows
 
-PATIENCE = 5  # iterations that must bring ...
-PROGRESS = 0.7  # ... the error below this share of what it was, or the start is given up
-DAMPING_FLOOR = 1e-9  # what is left of the damping at a solution
-POLISH = 2  # further steps once the tolerance is met, while each gains a decade
+
+@exact
+def cos_sin(x: float) -> tuple[float, float]:
+    """Cosine and sine to 2e-16 for |x| < 1e5: Cody-Waite reduction, minimax polynomials; half the time of libm's."""
+    k = np.floor(x * 0.63661977236758134308 + 0.5)
+    r = (x - k * 1.5707963267341256) - k * 6.0771005065061922e-11
+    z = r * r
+    s = z * (2.75573136213857245213e-6 + z * (-2.50507477628578072866e-8 + z * 1.58962301576546568060e-10))
+    s = r + r * z * (
+        -1.66666666666666307295e-1 + z * (8.33333333332211858878e-3 + z * (-1.98412698295895385996e-4 + s))
+    )
+    c = z * (-2.75573141792967388112e-7 + z * (2.08757008419747316778e-9 + z * -1.13585365213876817300e-11))
+    c = z * (-1.38888888888730564116e-3 + z * (2.48015872888517045348e-5 + c))
+    c = 1.0 - 0.5 * z + z * z * (4.16666666666665929218e-2 + c)
+    quarter = np.int64(k) & 3
+    if quarter & 1:
+        s, c = c, s
+    if quarter & 2:
+        s = -s
+    if (quarter + 1) & 2:
+        c = -c
+    return c, s
 
 
 @inline
@@ -62,7 +81,7 @@ def forward(
         origins[s, 0], origins[s, 1], origins[s, 2] = px, py, pz
         value = P[12] * x[wiring[s, 0]] + P[13]
         if wiring[s, 1] == 1:
-            cos, sin = math.cos(value), math.sin(value)
+            cos, sin = cos_sin(value)
             a, b = cos * ux + sin * vx, cos * vx - sin * ux
             d, e = cos * uy + sin * vy, cos * vy - sin * uy
             g, h = cos * uz + sin * vz, cos * vz - sin * uz
@@ -91,16 +110,17 @@ def forward(
 
 
 @inline
-def log_rotation(pose: Floats, out: Floats) -> float:
-    """Rotation vector of the pose's rotation; exact near 0 and, through the symmetric part, near pi."""
+def pose_error(pose: Floats, error: Floats) -> None:
+    """Translation and rotation vector (6,) of a pose; exact near 0 and, through the symmetric part, near pi."""
+    error[0], error[1], error[2] = pose[9], pose[10], pose[11]
     wx, wy, wz = 0.5 * (pose[7] - pose[5]), 0.5 * (pose[2] - pose[6]), 0.5 * (pose[3] - pose[1])
     sin = math.sqrt(wx * wx + wy * wy + wz * wz)
     cos = 0.5 * (pose[0] + pose[4] + pose[8] - 1.0)
     angle = math.atan2(sin, cos)
     if sin > 1e-4 or cos > 0.0:
         scale = angle / sin if sin > 1e-8 else 1.0
-        out[0], out[1], out[2] = scale * wx, scale * wy, scale * wz
-        return angle
+        error[3], error[4], error[5] = scale * wx, scale * wy, scale * wz
+        return
     # Near pi: R + R' + (1 - tr R) I = 2 (1 - cos) n n'; take its largest column, signed by the skew part.
     t = 1.0 - (pose[0] + pose[4] + pose[8])
     nx, ny, nz = 2.0 * pose[0] + t, pose[1] + pose[3], pose[2] + pose[6]
@@ -111,29 +131,22 @@ def log_rotation(pose: Floats, out: Floats) -> float:
     scale = angle / math.sqrt(nx * nx + ny * ny + nz * nz)
     if nx * wx + ny * wy + nz * wz < 0.0:
         scale = -scale
-    out[0], out[1], out[2] = scale * nx, scale * ny, scale * nz
-    return angle
+    error[3], error[4], error[5] = scale * nx, scale * ny, scale * nz
 
 
 @inline
-def residual(task: Floats, pose: Floats, phi: Floats, error: Floats) -> tuple[float, float]:
-    """Write a tip's weighted error beyond its slack (6,); return its size in m and in rad, unweighted."""
-    error[0], error[1], error[2] = pose[9], pose[10], pose[11]
-    error[3], error[4], error[5] = phi[0], phi[1], phi[2]
+def residual(task: Floats, error: Floats, r: Floats) -> tuple[float, float]:
+    """Weighted error beyond the slack, r (6,); returns the squares of its size in m and in rad, unweighted."""
     position = orientation = 0.0
     for j in range(6):
         slack = task[12 + j]
-        beyond = 0.0
-        if error[j] > slack:
-            beyond = error[j] - slack
-        elif error[j] < -slack:
-            beyond = error[j] + slack
+        beyond = max(error[j] - slack, 0.0) + min(error[j] + slack, 0.0)
         if j < 3:
             position += beyond * beyond
         else:
             orientation += beyond * beyond
-        error[j] = task[18 + j] * beyond
-    return math.sqrt(position), math.sqrt(orientation)
+        r[j] = task[18 + j] * beyond
+    return position, orientation
 
 
 @inline
@@ -146,128 +159,44 @@ def jacobian(
     pose: Floats,
     axes: Floats,
     origins: Floats,
-    phi: Floats,
-    columns: Floats,
+    error: Floats,
+    rotated: bool,
+    J: Floats,
 ) -> None:
-    """Add one tip's weighted error Jacobian to ``columns`` (n, 6): row c is d(error)/d(x_c)."""
+    """Add one tip's weighted Jacobian to J (n, 6): row c is d(error)/d(x_c).
+
+    The rotation rows are angular velocity; with ``rotated`` they are d log(R) = Jl^-1(log R) omega instead, which
+    differs far from the target and matters when some axes of rotation are free.
+    """
     px, py, pz = pose[9], pose[10], pose[11]
-    fx, fy, fz = phi[0], phi[1], phi[2]
-    square = fx * fx + fy * fy + fz * fz
+    fx, fy, fz = error[3], error[4], error[5]
     k = 1.0 / 12.0
-    if square > 1e-6:
-        half = 0.5 * math.sqrt(square)
-        k = (1.0 - half * math.cos(half) / math.sin(half)) / square
+    if rotated:
+        square = fx * fx + fy * fy + fz * fz
+        if square > 1e-6:
+            half = 0.5 * math.sqrt(square)
+            k = (1.0 - half * math.cos(half) / math.sin(half)) / square
     for s in range(first, last):
-        c, scale = wiring[s, 0], joints[s, 12]
+        row = J[wiring[s, 0]]
+        scale = joints[s, 12]
         zx, zy, zz = scale * axes[s, 0], scale * axes[s, 1], scale * axes[s, 2]
         if wiring[s, 1] == 1:
             dx, dy, dz = px - origins[s, 0], py - origins[s, 1], pz - origins[s, 2]
-            columns[c, 0] += task[18] * (zy * dz - zz * dy)
-            columns[c, 1] += task[19] * (zz * dx - zx * dz)
-            columns[c, 2] += task[20] * (zx * dy - zy * dx)
-            ux, uy, uz = fy * zz - fz * zy, fz * zx - fx * zz, fx * zy - fy * zx
-            columns[c, 3] += task[21] * (zx - 0.5 * ux + k * (fy * uz - fz * uy))
-            columns[c, 4] += task[22] * (zy - 0.5 * uy + k * (fz * ux - fx * uz))
-            columns[c, 5] += task[23] * (zz - 0.5 * uz + k * (fx * uy - fy * ux))
+            row[0] += task[18] * (zy * dz - zz * dy)
+            row[1] += task[19] * (zz * dx - zx * dz)
+            row[2] += task[20] * (zx * dy - zy * dx)
+            if rotated:
+                ux, uy, uz = fy * zz - fz * zy, fz * zx - fx * zz, fx * zy - fy * zx
+                zx += k * (fy * uz - fz * uy) - 0.5 * ux
+                zy += k * (fz * ux - fx * uz) - 0.5 * uy
+                zz += k * (fx * uy - fy * ux) - 0.5 * uz
+            row[3] += task[21] * zx
+            row[4] += task[22] * zy
+            row[5] += task[23] * zz
         else:
-            columns[c, 0] += task[18] * zx
-            columns[c, 1] += task[19] * zy
-            columns[c, 2] += task[20] * zz
-
-
-@inline
-def cholesky_solve(H: Floats, y: Floats, m: int) -> None:
-    """Solve H y = y in place; H (m, m) is positive definite and is overwritten by its factor."""
-    for j in range(m):
-        d = H[j, j]
-        for k in range(j):
-            d -= H[j, k] * H[j, k]
-        d = 1.0 / math.sqrt(d)
-        H[j, j] = d
-        for i in range(j + 1, m):
-            v = H[i, j]
-            for k in range(j):
-                v -= H[i, k] * H[j, k]
-            H[i, j] = v * d
-    for i in range(m):
-        v = y[i]
-        for k in range(i):
-            v -= H[i, k] * y[k]
-        y[i] = v * H[i, i]
-    for i in range(m - 1, -1, -1):
-        v = y[i]
-        for k in range(i + 1, m):
-            v -= H[k, i] * y[k]
-        y[i] = v * H[i, i]
-
-
-@inline
-def evaluate(
-    joints: Floats,
-    wiring: Ints,
-    ends: Ints,
-    tips: Floats,
-    tasks: Floats,
-    rows: Ints,
-    x: Floats,
-    axes: Floats,
-    origins: Floats,
-    pose: Floats,
-    phi: Floats,
-    error: Floats,
-    columns: Floats,
-    r: Floats,
-    J: Floats,
-) -> tuple[float, bool]:
-    """Residual r (m,) and its Jacobian by coordinate J (n, m); returns |r|^2 and whether every tip is in tolerance."""
-    m = 0
-    square = 0.0
-    solved = True
-    for t in range(tips.shape[0]):
-        task = tasks[t]
-        forward(joints, wiring, ends[t], ends[t + 1], tips[t], task[:12], x, axes, origins, pose)
-        log_rotation(pose, phi)
-        position, orientation = residual(task, pose, phi, error)
-        solved = solved and position <= task[24] and orientation <= task[25]
-        columns[:, :] = 0.0
-        jacobian(joints, wiring, ends[t], ends[t + 1], task, pose, axes, origins, phi, columns)
-        while m < rows.shape[0] and rows[m, 0] == t:
-            j = rows[m, 1]
-            r[m] = error[j]
-            square += error[j] * error[j]
-            held = error[j] != 0.0 or task[12 + j] == 0.0
-            for c in range(columns.shape[0]):
-                J[c, m] = columns[c, j] if held else 0.0
-            m += 1
-    return square, solved
-
-
-@inline
-def step(x: Floats, lower: Floats, upper: Floats, r: Floats, J: Floats, damping: float, H: Floats, y: Floats) -> None:
-    """Damped least-squares step dx = -J' (J J' + damping I)^-1 r over the joints that their limits leave free."""
-    n, m = J.shape
-    for a in range(m):
-        for b in range(a):
-            H[a, b] = 0.0
-        H[a, a] = damping
-        y[a] = r[a]
-    for c in range(n):
-        slope = 0.0
-        for a in range(m):
-            slope += J[c, a] * r[a]
-        if (slope > 0.0 and x[c] <= lower[c]) or (slope < 0.0 and x[c] >= upper[c]):
-            J[c, :] = 0.0  # at its limit and pushed outward
-            continue
-        for a in range(m):
-            v = J[c, a]
-            for b in range(a + 1):
-                H[a, b] += v * J[c, b]
-    cholesky_solve(H, y, m)
-    for c in range(n):
-        v = 0.0
-        for a in range(m):
-            v += J[c, a] * y[a]
-        x[c] = min(max(x[c] - v, lower[c]), upper[c])
+            row[0] += task[18] * zx
+            row[1] += task[19] * zy
+            row[2] += task[20] * zz
 
 
 @jit(f"void({PATHS}, f8[:,::1], f8[:,:,::1])")
@@ -285,76 +214,13 @@ def poses(joints: Floats, wiring: Ints, ends: Ints, tips: Floats, X: Floats, out
 def costs(joints: Floats, wiring: Ints, ends: Ints, tips: Floats, tasks: Floats, X: Floats, out: Floats) -> None:
     """Cost (k,) of a population X (k, n): weighted distance in m plus weighted angle in rad, summed over the tips."""
     S = joints.shape[0]
-    axes, origins, pose, phi, error = np.empty((S, 3)), np.empty((S, 3)), np.empty(12), np.empty(3), np.empty(6)
+    axes, origins, pose, error, r = np.empty((S, 3)), np.empty((S, 3)), np.empty(12), np.empty(6), np.empty(6)
     for k in range(X.shape[0]):
         total = 0.0
         for t in range(tips.shape[0]):
             task = tasks[t]
             forward(joints, wiring, ends[t], ends[t + 1], tips[t], task[:12], X[k], axes, origins, pose)
-            log_rotation(pose, phi)
-            residual(task, pose, phi, error)
-            total += math.sqrt(error[0] ** 2 + error[1] ** 2 + error[2] ** 2)
-            total += math.sqrt(error[3] ** 2 + error[4] ** 2 + error[5] ** 2)
+            pose_error(pose, error)
+            residual(task, error, r)
+            total += math.sqrt(r[0] ** 2 + r[1] ** 2 + r[2] ** 2) + math.sqrt(r[3] ** 2 + r[4] ** 2 + r[5] ** 2)
         out[k] = total
-
-
-@jit(f"UniTuple(i8, 2)({PATHS}, {TASKS}, f8[::1], f8[::1], f8[:,::1], f8, i8, i8, f8[::1])")
-def descend(
-    joints: Floats,
-    wiring: Ints,
-    ends: Ints,
-    tips: Floats,
-    tasks: Floats,
-    rows: Ints,
-    lower: Floats,
-    upper: Floats,
-    starts: Floats,
-    damping: float,
-    per_start: int,
-    evaluations: int,
-    best: Floats,
-) -> tuple[int, int]:
-    """Damped least squares from one start after the other until one reaches the tolerance or the evaluations are spent.
-
-    Returns the evaluations spent and the index of the start that solved it, or -1; ``best`` (n,) gets the coordinates.
-    """
-    n, m, S = lower.shape[0], rows.shape[0], joints.shape[0]
-    axes, origins, pose, phi, error = np.empty((S, 3)), np.empty((S, 3)), np.empty(12), np.empty(3), np.empty(6)
-    columns, r, J, H, y = np.empty((n, 6)), np.empty(m), np.empty((n, m)), np.empty((m, m)), np.empty(m)
-    x = np.empty(n)
-    spent = 0
-    least = np.inf
-    for k in range(starts.shape[0]):
-        x[:] = starts[k]
-        mark = np.inf
-        found = False
-        polish = POLISH
-        for i in range(per_start):
-            if spent >= evaluations:
-                break
-            square, solved = evaluate(
-                joints, wiring, ends, tips, tasks, rows, x, axes, origins, pose, phi, error, columns, r, J
-            )
-            spent += 1
-            if found and not (solved and square < 0.01 * least):
-                return spent, k
-            if square < least or solved:
-                least = square
-                best[:] = x
-            if solved:
-                polish = polish - 1 if found else POLISH
-                found = True
-                if polish == 0 or square == 0.0:
-                    return spent, k
-            elif i % PATIENCE == PATIENCE - 1:
-                if square > PROGRESS * PROGRESS * mark:
-                    break
-                mark = square
-            elif i == 0:
-                mark = square
-            step(x, lower, upper, r, J, damping * square + DAMPING_FLOOR, H, y)
-        if found:
-            return spent, k
-        if spent >= evaluations:
-            break
-    return spent, -1

@@ -19,7 +19,7 @@ def load_kernels() -> ModuleType:
     notice.daemon = True
     notice.start()
     try:
-        from pin_metaik.kinematics import kernels
+        from pin_metaik.kinematics import descent
     finally:
         notice.cancel()
-    return kernels
+    return descent

@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import NDArray
 
 from pin_metaik.kinematics.limits import Limits
@@ -46,15 +47,15 @@ class Reach:
     least: float
     most: float
 
-    def gap(self, pose: NDArray[np.float64], distance: float = 0.0, angle: float = 0.0) -> float:
-        """How far (m) every configuration is from a pose (4, 4), at least; 0 proves nothing.
+    def gap(self, pose: pin.SE3, distance: float = 0.0, angle: float = 0.0) -> float:
+        """How far (m) every configuration is from a pose, at least; 0 proves nothing.
 
         Args:
             pose: World pose of the target.
             distance: How far from it the tip may be, m.
             angle: By how much it may be turned, rad; ``inf`` when bounds are for the position alone.
         """
-        span = float(np.linalg.norm(pose[:3, :3] @ self.end + pose[:3, 3] - self.anchor))
+        span = float(np.linalg.norm(pose.act(self.end) - self.anchor))
         lever = float(np.linalg.norm(self.end))
         allowed = ROUNDING + distance + (lever * angle if lever else 0.0)
         return max(0.0, span - self.most - allowed, self.least - span - allowed)

@@ -50,7 +50,7 @@ def reference_descent(problem: mik.IKProblem, x: np.ndarray, steps: int) -> np.n
     """The damped least squares of the kernel written with Pinocchio's FK, frame Jacobian and Jlog3."""
     chain, target = problem.chain, problem.targets[0]
     model, data, limits = chain.model, chain.model.createData(), chain.limits
-    goal, frame = pin.SE3(target.pose), chain.frame_ids[0]
+    goal, frame = target.pose, chain.frame_ids[0]
     columns = [model.joints[int(j)].idx_v for j in chain.coordinates.joints]
     for _ in range(steps):
         q = chain.q(x)
@@ -58,12 +58,18 @@ def reference_descent(problem: mik.IKProblem, x: np.ndarray, steps: int) -> np.n
         error = goal.actInv(pin.updateFramePlacement(model, data, frame))
         r = np.concatenate([error.translation, pin.log3(error.rotation)])
         to_goal = goal.rotation.T
-        J = np.vstack([to_goal @ J[:3], pin.Jlog3(error.rotation) @ error.rotation.T @ to_goal @ J[3:]])
+        J = np.vstack([to_goal @ J[:3], to_goal @ J[3:]])  # the whole orientation counts: angular velocity will do
         slope = J.T @ r
         blocked = ((x <= limits.lower) & (slope > 0)) | ((x >= limits.upper) & (slope < 0))
         J[:, blocked] = 0.0
-        damping = 0.05 * (r @ r) + 1e-9
-        x = limits.clip(x - J.T @ np.linalg.solve(J @ J.T + damping * np.eye(6), r))
+        damped = (0.005 * (r @ r) + 1e-9) * np.eye(6)
+        dx = -J.T @ np.linalg.solve(J @ J.T + damped, r)
+        crossing = ~blocked & ((x + dx < limits.lower) | (x + dx > limits.upper))
+        if crossing.any():  # those go onto their limits, and the others make up for it
+            onto = np.where(crossing, limits.clip(x + dx) - x, 0.0)
+            free = np.where(crossing, 0.0, J)
+            dx = onto - free.T @ np.linalg.solve(free @ free.T + damped, r + J @ onto)
+        x = limits.clip(x + dx)
     return x
 
 

@@ -1,6 +1,7 @@
 """Reach bounds are true: nothing reachable is ever excluded, and they are tight enough to be of use."""
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from tests.robots_under_test import ARMS, CATALOGUE, chain_of
@@ -14,7 +15,7 @@ def test_no_reachable_pose_is_excluded(name: str, oriented: bool) -> None:
     X = chain.box.sample(np.random.default_rng(0), 3000)
     corners = np.where(np.random.default_rng(1).random(X.shape) < 0.5, chain.box.lower, chain.box.upper)
     for pose in np.concatenate([chain.poses(X)[:, 0], chain.poses(corners)[:, 0]]):
-        assert reach.gap(pose) == 0.0
+        assert reach.gap(pin.SE3(pose)) == 0.0
 
 
 @pytest.mark.parametrize(("name", "shoulder_to_wrist"), [("rv7fl", 0.435 + np.hypot(0.47, 0.05)), ("puma560", 0.8774)])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,11 @@ from numpy.typing import NDArray
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.protocol import Refinement
+from pin_metaik.kinematics.atlas import Atlas, no_atlas
+
+PROGRESS = 0.49  # a start is given up unless four steps bring the squared error below this share,
+SETTLED = 1.0 - 1e-9  # ... or this one, when there is nothing else to try
+STIFF = 1.0  # damping where a solution is far: plain least squares overshoots there
 
 
 @dataclass(frozen=True)
@@ -17,15 +22,15 @@ class DLS:
     """Damped least squares (Nakamura and Hanafusa 1986; Wampler 1986), all starts in one compiled loop.
 
     Each step is dx = -J' (J J' + lambda I)^-1 e over the joints that are not at a limit and pushed outward, with
-    lambda = damping |e|^2 + 1e-9, then brought inside the limits. A start is given up when five steps do not take
-    the error below 70 % of what it was.
+    lambda = damping |e|^2 + 1e-9. Joints that would cross a limit go onto it and the step is solved again for the
+    others. A start is given up when four steps do not take the error below 70 % of what it was.
 
     Attributes:
         damping: What the squared error is multiplied with, 1/m^2 or 1/rad^2.
         iterations: Steps from one start at most.
     """
 
-    damping: float = 0.05
+    damping: float = 0.005
     iterations: int = 100
 
     def __post_init__(self) -> None:
@@ -37,6 +42,24 @@ class DLS:
 
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent."""
+        return self._descend(problem, no_atlas(problem.chain.n, len(problem.targets)), starts, evaluations, PROGRESS)
+
+    def refine_anywhere(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
+        """The same, but from the sampled configurations that have the nearest poses, too.
+
+        The first start (s, n) goes before them when its pose is nearer to the target than theirs.
+        """
+        return self._descend(problem, problem.chain.atlas, starts, evaluations, PROGRESS)
+
+    def settle(self, problem: IKProblem, x: NDArray[np.float64], evaluations: int) -> Refinement:
+        """Go on from x (n,) in small steps as long as it gets nearer at all: for targets that cannot be met."""
+        return replace(self, damping=STIFF)._descend(
+            problem, no_atlas(problem.chain.n, len(problem.targets)), x[None], evaluations, SETTLED
+        )
+
+    def _descend(
+        self, problem: IKProblem, atlas: Atlas, starts: NDArray[np.float64], evaluations: int, progress: float
+    ) -> Refinement:
         chain = problem.chain
         best = np.empty(chain.n)
         spent, solved_by = chain.kernels.descend(
@@ -45,8 +68,10 @@ class DLS:
             problem.rows,
             chain.limits.lower,
             chain.limits.upper,
+            *atlas.arrays,
             starts,
             self.damping,
+            progress,
             self.iterations,
             evaluations,
             best,

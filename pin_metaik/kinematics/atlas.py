@@ -1,0 +1,71 @@
+"""A table of sampled configurations, looked up by pose: where a descent starts.
+
+From the entry whose pose is nearest a descent needs 8 evaluations where a random start needs 22 (see ``descent``). The
+entries are kept in leaves of a balanced k-d tree; a look-up compares the target with the means of all leaves, then with
+the entries of the nearest few, which takes 1 us instead of the 5 us of comparing it with all.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+LEAF = 64  # entries a leaf, and leaves an atlas
+SEED = 20_241_122
+TURN = 0.6  # what a whole turn of an axis counts, in root-mean-square distances of the tip from its mean
+
+
+@dataclass(frozen=True, eq=False)
+class Atlas:
+    """Sampled coordinates with the features of their poses.
+
+    A feature (9 T,) is, for each tip, its position and its x and z axes, the axes times ``scale`` (m), so that
+    Euclidean distances between features weigh metres against turns.
+
+    Attributes:
+        leaves: (1 + c, 9 T, LEAF) features by column: leaf 0 holds the means of the c others.
+        x: (c LEAF, n) coordinates, leaf after leaf.
+        scale: m.
+    """
+
+    leaves: NDArray[np.float64]
+    x: NDArray[np.float64]
+    scale: float
+
+    @property
+    def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+        """The arrays in the order in which the descent takes them."""
+        return self.leaves, self.x, self.scale
+
+
+@cache
+def no_atlas(n: int, tips: int) -> Atlas:
+    """An atlas without entries, for descents from given starts only."""
+    return Atlas(np.empty((0, 9 * tips, LEAF)), np.empty((0, n)), 1.0)
+
+
+def chart(x: NDArray[np.float64], poses: NDArray[np.float64]) -> Atlas:
+    """An atlas of the coordinates x (LEAF LEAF, n) with the poses (k, T, 4, 4) of their tips."""
+    positions = poses[..., :3, 3]
+    spread = np.sqrt(((positions - positions.mean(axis=0)) ** 2).sum(axis=-1).mean())
+    scale = TURN * max(float(spread), 1e-6)
+    features = np.concatenate([positions, scale * poses[..., :3, 0], scale * poses[..., :3, 2]], axis=-1)
+    features = features.reshape(len(x), -1)
+    order = _leaves(features, np.arange(len(x)))
+    leaves = features[order].reshape(-1, LEAF, features.shape[1])
+    leaves = np.concatenate([leaves.mean(axis=1)[None], leaves])
+    return Atlas(np.ascontiguousarray(leaves.transpose(0, 2, 1)), x[order], scale)
+
+
+def _leaves(features: NDArray[np.float64], members: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The members in an order in which every LEAF of them are near each other: halved across the widest spread."""
+    if len(members) <= LEAF:
+        return members
+    mine = features[members]
+    widest = int(np.argmax(mine.max(axis=0) - mine.min(axis=0)))
+    half = len(members) // 2
+    order = members[np.argpartition(mine[:, widest], half)]
+    return np.concatenate([_leaves(features, order[:half]), _leaves(features, order[half:])])
