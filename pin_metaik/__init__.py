@@ -12,14 +12,20 @@ from pin_metaik.errors import MetaIKError
 from pin_metaik.ik import (
     DLS,
     REFINERS,
+    IKBatch,
+    IKPath,
     IKProblem,
     IKResult,
+    IKSolutions,
     IKSolver,
     IKStatus,
     Refinement,
     Refiner,
     Target,
     solve_ik,
+    solve_ik_all,
+    solve_ik_batch,
+    solve_ik_path,
 )
 from pin_metaik.kinematics import Chain, Limits
 from pin_metaik.optimize import ALGORITHMS, AskTell, Box, Budget, Metaheuristic, Search, minimize
@@ -35,8 +41,11 @@ __all__ = [
     "Box",
     "Budget",
     "Chain",
+    "IKBatch",
+    "IKPath",
     "IKProblem",
     "IKResult",
+    "IKSolutions",
     "IKSolver",
     "IKStatus",
     "Limits",
@@ -51,4 +60,7 @@ __all__ = [
     "minimize",
     "robot_names",
     "solve_ik",
+    "solve_ik_all",
+    "solve_ik_batch",
+    "solve_ik_path",
 ]

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
+from functools import cache, wraps
+from threading import Timer
 from typing import Any, TypeVar, cast
 
 import numba
@@ -18,15 +21,41 @@ OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
 # Sums may be taken in another order and a b + c be rounded once; infinities and NaN keep their meaning.
 LOOSE = {"contract", "reassoc", "nsz", "arcp"}
 
+WAIT = 1.5  # s; reading machine code from the cache takes a tenth of it
+NOTICE = "pin_metaik: compiling an inner loop for this machine, once; this takes some ten seconds ..."
+
 
 def jit(signature: str) -> Callable[[F], F]:
-    """Compile a function of this numba signature when its module is imported, or read it from the cache."""
-    return cast(Callable[[F], F], numba.njit(signature, fastmath=LOOSE, **OPTIONS))
+    """A function that is compiled for this numba signature when first called, or read from the cache."""
+
+    def lazy(function: F) -> F:
+        @cache
+        def compiled() -> Callable[..., Any]:
+            notice = Timer(WAIT, lambda: print(NOTICE, file=sys.stderr, flush=True))
+            notice.daemon = True
+            notice.start()
+            try:
+                return cast(Callable[..., Any], numba.njit(signature, fastmath=LOOSE, **OPTIONS)(function))
+            finally:
+                notice.cancel()
+
+        @wraps(function)
+        def call(*arguments: Any) -> Any:
+            return compiled()(*arguments)
+
+        return cast(F, call)
+
+    return lazy
 
 
 def inline(function: F) -> F:
-    """A part of a loop: compiled into the loop that calls it, with what is constant there."""
+    """A part of a loop: compiled into each loop that calls it, with what is constant there."""
     return cast(F, numba.njit(fastmath=LOOSE, forceinline=True, **OPTIONS)(function))
+
+
+def shared(function: F) -> F:
+    """A part that several loops call: compiled once, for all of them."""
+    return cast(F, numba.njit(fastmath=LOOSE, **OPTIONS)(function))
 
 
 def exact(function: F) -> F:

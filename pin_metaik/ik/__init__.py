@@ -1,16 +1,22 @@
 """Inverse kinematics: targets, problems, solvers, refiners and results."""
 
+from pin_metaik.ik.batch import IKBatch, solve_ik_batch
+from pin_metaik.ik.path import IKPath, solve_ik_path
 from pin_metaik.ik.problem import IKProblem, Verdict
 from pin_metaik.ik.refine import DLS, REFINERS, Refinement, Refiner
 from pin_metaik.ik.result import IKResult, IKStatus
+from pin_metaik.ik.solutions import IKSolutions, solve_ik_all
 from pin_metaik.ik.solver import IKSolver, solve_ik
 from pin_metaik.ik.target import Target
 
 __all__ = [
     "DLS",
     "REFINERS",
+    "IKBatch",
+    "IKPath",
     "IKProblem",
     "IKResult",
+    "IKSolutions",
     "IKSolver",
     "IKStatus",
     "Refinement",
@@ -18,4 +24,7 @@ __all__ = [
     "Target",
     "Verdict",
     "solve_ik",
+    "solve_ik_all",
+    "solve_ik_batch",
+    "solve_ik_path",
 ]

@@ -92,6 +92,18 @@ class IKProblem:
             for t, target in enumerate(self.targets)
         )
 
+    def linearize(self, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Weighted residual r (m,) and its Jacobian by coordinate J (n, m) at x (n,)."""
+        r, J = np.empty(len(self.rows)), np.empty((self.chain.n, len(self.rows)))
+        self.chain.kernels.linearize(*self.chain.paths.arrays, self.tasks, self.rows, x, r, J)
+        return r, J
+
+    def near(self, count: int) -> NDArray[np.float64]:
+        """Sampled coordinates (count, n) of the chain's atlas with the poses nearest to the targets, nearest first."""
+        out = np.empty((count, self.chain.n))
+        self.chain.kernels.neighbours(self.tasks, *self.chain.atlas.arrays, count, out)
+        return out
+
     def costs(self, X: NDArray[np.float64]) -> NDArray[np.float64]:
         """Cost (k,) of coordinates X (k, n): weighted distance in m plus weighted angle in rad, summed over the frames.
 
@@ -121,6 +133,11 @@ class IKProblem:
 def _rows(counts: tuple[tuple[bool, ...], ...]) -> NDArray[np.int64]:
     """The (frame, axis) pairs at which ``counts`` is true."""
     return np.ascontiguousarray(np.argwhere(np.array(counts)))
+
+
+def rows_of(tasks: NDArray[np.float64]) -> NDArray[np.int64]:
+    """(m, 2) the (frame, axis) pairs of tasks (T, 26) that are not free."""
+    return _rows(tuple(map(tuple, np.isfinite(tasks[:, 12:18]).tolist())))
 
 
 def _match(frames: tuple[str, ...], targets: tuple[Target, ...]) -> tuple[Target, ...]:

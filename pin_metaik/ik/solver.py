@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.errors import InvalidBudget, InvalidSetting
-from pin_metaik.ik.ledger import Ledger
+from pin_metaik.errors import InvalidBudget, InvalidSetting, UnknownName
+from pin_metaik.ik.ledger import ENDLESS, Ledger
+from pin_metaik.ik.nullspace import slide
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine import DLS, Refiner, make_refiner
 from pin_metaik.ik.result import IKResult, IKStatus
-from pin_metaik.ik.starts import DEFAULT_SEED, start_batches
+from pin_metaik.ik.select import SELECT
+from pin_metaik.ik.solutions import collect
+from pin_metaik.ik.starts import DEFAULT_SEED, Rng, start_batches
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
@@ -24,9 +27,8 @@ ELITE = 8  # points of a seeder's search that are refined
 SEEDER_SHARE = 0.25  # of the budget, for one round of the seeder before its elite is refined
 RESTART_SHARE = 0.5  # of the budget, for restarts before the automatic solver turns to a seeder
 FALLBACK = "mtde"  # ... which is this one
+CHOICE, CHOICE_SHARE = 64, 0.5  # solutions to choose from at most, and the share of the budget to find them
 RESERVE = 0.05  # of the budget, to settle down at the nearest pose when none is near enough
-
-Rng: TypeAlias = int | np.random.Generator | None
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,8 @@ class IKSolver:
             with it). A budget in seconds is looked at every few milliseconds, and not reproducible. ``target`` is the
             cost at which a pure metaheuristic stops; by default it stops once the tolerances are met.
         starts: How many starts to refine without a seeder; ``None``: until the budget is spent.
+        select: ``"first"`` solution found, or of all distinct ones that the budget allows to find, the ``"nearest"`` to
+            ``q0``, the one of best ``"manipulability"``, or the one that keeps farthest from the ``"limits"``.
         trace: Whether to keep the seeder's convergence.
     """
 
@@ -51,6 +55,7 @@ class IKSolver:
     refiner: str | Refiner | None = "dls"
     budget: Budget = field(default=Budget(evaluations=50_000))
     starts: int | None = None
+    select: str = "first"
     trace: bool = False
     _seeder: Metaheuristic | None = field(init=False, repr=False)
     _refiner: Refiner | None = field(init=False, repr=False)
@@ -69,6 +74,8 @@ class IKSolver:
             raise InvalidSetting("without a refiner name a seeder, e.g. IKSolver('gwo', None)")
         object.__setattr__(self, "_seeder", seeder)
         object.__setattr__(self, "_refiner", refiner)
+        if self.select != "first" and self.select not in SELECT:
+            raise UnknownName("selection", self.select, {"first", *SELECT})
         if self.starts is not None and self.starts < 1:
             raise InvalidSetting(f"starts is at least 1 or None, got {self.starts}")
         if not self.budget.ends:
@@ -82,7 +89,9 @@ class IKSolver:
         x0 = chain.x(base)
         ledger = Ledger(problem, self.budget, began, x0)
         try:
-            if self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
+            if self.select != "first":
+                self._choose(problem, x0, rng, ledger)
+            if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
                 self._restart(problem, self._refiner, x0, rng, ledger)
             if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
                 self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
@@ -103,6 +112,28 @@ class IKSolver:
             problem=problem,
             trace=np.concatenate(ledger.traces) if ledger.traces else None,
         )
+
+    def _choose(self, problem: IKProblem, x0: NDArray[np.float64], rng: Rng, ledger: Ledger) -> None:
+        """Collect distinct solutions and take the best by the chosen measure; on a redundant chain, improve it."""
+        measure = SELECT[self.select]
+        budget = Budget(evaluations=max(1, ledger.left(CHOICE_SHARE)), seconds=self.budget.seconds)
+        found, _, spent = collect(problem, x0, rng, limit=CHOICE, apart=1e-2, budget=budget)
+        ledger.spent += spent
+        if len(found):
+            found = problem.limits.nearest_turns(found, x0)
+            best = found[np.argmin(measure(problem, found, x0))]
+            ledger.x, ledger.met = slide(problem, best, x0, measure), True
+
+    @property
+    def fast(self) -> DLS | None:
+        """The refiner, if this is the automatic solver, whose first step a compiled batch can take for many targets."""
+        automatic = self.seeder == "auto" and self.select == "first" and self.budget.seconds is None
+        return self._refiner if automatic and isinstance(self._refiner, DLS) else None
+
+    @property
+    def first_evaluations(self) -> int:
+        """Evaluations that the automatic solver spends on restarts before it turns to a seeder."""
+        return ENDLESS if self.budget.evaluations is None else math.ceil(RESTART_SHARE * self.budget.evaluations)
 
     def _restart(self, problem: IKProblem, refiner: Refiner, x0: NDArray[np.float64], rng: Rng, ledger: Ledger) -> None:
         """Refine from x0 (n,), then from random starts; the automatic solver also from an atlas of the chain."""

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.kinematics import Chain
 
+Rng: TypeAlias = int | np.random.Generator | None
+
 DEFAULT_SEED = 0
 FIRST, BATCH = 16, 64  # starts refined before the first look at the clock and at the reach, and between further ones
 
 
-def start_batches(
-    chain: Chain, x0: NDArray[np.float64], rng: int | np.random.Generator | None, count: int | None
-) -> Iterator[NDArray[np.float64]]:
+def start_batches(chain: Chain, x0: NDArray[np.float64], rng: Rng, count: int | None) -> Iterator[NDArray[np.float64]]:
     """Starts (s, n) in batches, x0 the very first; ``count`` in all, or endless."""
     given = 0
     for index in itertools.count():
-        starts = _drawn(chain, rng, index, BATCH if index else FIRST)
+        starts = drawn(chain, rng, index, BATCH if index else FIRST)
         if index == 0:
             starts[0] = x0
         if count is not None:
@@ -31,7 +32,7 @@ def start_batches(
             return
 
 
-def _drawn(chain: Chain, rng: int | np.random.Generator | None, index: int, size: int) -> NDArray[np.float64]:
+def drawn(chain: Chain, rng: Rng, index: int, size: int) -> NDArray[np.float64]:
     """One batch of starts, the caller's own: from a generator, or the same for the same seed and index."""
     if isinstance(rng, np.random.Generator):
         return chain.box.sample(rng, size)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from functools import cached_property
+from threading import local
+from types import ModuleType
 
 import numpy as np
 import pinocchio as pin
@@ -14,7 +16,6 @@ from pin_metaik.errors import FixedFrame, FrameNotFound, InvalidConfiguration, U
 from pin_metaik.kinematics.atlas import LEAF, SEED, Atlas, chart
 from pin_metaik.kinematics.coordinates import Coordinates, consecutive
 from pin_metaik.kinematics.limits import Limits, finite_or_infinite
-from pin_metaik.kinematics.loading import load_kernels
 from pin_metaik.kinematics.paths import lay_paths, motion_of
 from pin_metaik.kinematics.reach import Reach, reach_of
 from pin_metaik.optimize import Box
@@ -64,6 +65,7 @@ class Chain:
             InvalidBounds: If limits are crossed or NaN.
             InvalidConfiguration: If ``reference`` is not a configuration of the model.
         """
+        self._made_from = (model, frame, tuple(locked), dict(limits or {}), reference)
         self.model = model
         self.frames = (frame,) if isinstance(frame, str) else tuple(frame)
         self.frame_ids = tuple(_frame_id(model, name) for name in self.frames)
@@ -83,14 +85,28 @@ class Chain:
 
         self.names = tuple(model.names[j] for j in drivers)
         self.coordinates = _coordinates(model, drivers)
-        self.limits = _limits(model, drivers, self.names).replace(dict(limits or {}))
+        mimicked = {motion.driver for motion in motions.values() if motion.scale != 1.0}
+        self.limits = _limits(model, drivers, self.names, mimicked).replace(dict(limits or {}))
         plain, entries = self.coordinates.plain, self.coordinates.plain_q
         self._least[entries], self._most[entries] = self.limits.lower[plain], self.limits.upper[plain]
         self.paths = lay_paths(model, self.frame_ids, {j: c for c, j in enumerate(drivers)}, motions, self.reference)
-        self.data = model.createData()
-        self.kernels = load_kernels()
+        self.kernels = _kernels()
+        self._local = local()
         self._samples: dict[tuple[int, tuple[int, ...]], NDArray[np.float64]] = {}
         self._reaches: dict[tuple[int, bool], Reach] = {}
+
+    @property
+    def data(self) -> pin.Data:
+        """Pinocchio's scratch for this model, one a thread."""
+        try:
+            return self._local.data
+        except AttributeError:
+            self._local.data = self.model.createData()
+            return self._local.data
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle by what the chain was made from."""
+        return _remade, self._made_from
 
     @property
     def n(self) -> int:
@@ -167,6 +183,23 @@ class Chain:
         return f"Chain({self.model.name}: {', '.join(self.frames)}; {self.n} joints: {', '.join(self.names)})"
 
 
+def _remade(
+    model: pin.Model,
+    frame: str | Iterable[str],
+    locked: tuple[str, ...],
+    limits: dict[str, tuple[float, float]],
+    reference: ArrayLike | None,
+) -> Chain:
+    return Chain(model, frame, locked=locked, limits=limits, reference=reference)
+
+
+def _kernels() -> ModuleType:
+    """The compiled loops, imported late: what compiles them takes 0.4 s to import."""
+    from pin_metaik.kinematics import searches
+
+    return searches
+
+
 def as_configuration(model: pin.Model, q: ArrayLike) -> NDArray[np.float64]:
     """A configuration (nq,) of the model, checked.
 
@@ -223,11 +256,12 @@ def _coordinates(model: pin.Model, drivers: list[int]) -> Coordinates:
     )
 
 
-def _limits(model: pin.Model, drivers: list[int], names: tuple[str, ...]) -> Limits:
+def _limits(model: pin.Model, drivers: list[int], names: tuple[str, ...], mimicked: set[int]) -> Limits:
     lower = finite_or_infinite([model.lowerPositionLimit[model.joints[j].idx_q] for j in drivers])
     upper = finite_or_infinite([model.upperPositionLimit[model.joints[j].idx_q] for j in drivers])
     velocity = finite_or_infinite([model.upperVelocityLimit[model.joints[j].idx_v] for j in drivers])
     turns = np.array([motion_of(model, j).rotates for j in drivers])
     pair = np.array([model.joints[j].nq == 2 for j in drivers])
     lower[pair], upper[pair] = -np.inf, np.inf
-    return Limits(lower, upper, velocity, turns, names)
+    winds = turns & (upper - lower >= 2.0 * np.pi) & [j not in mimicked for j in drivers]
+    return Limits(lower, upper, velocity, turns, winds, names)

@@ -1,4 +1,4 @@
-"""The compiled descent: damped least squares with the limits inside the step, from one start after the other.
+"""The compiled descent from one start: damped least squares with the limits inside the step.
 
 What was measured: evaluations a target on random / near-limit / singular targets, the mean of ten arms with 300 each.
 
@@ -12,19 +12,27 @@ What was measured: evaluations a target on random / near-limit / singular target
 
 from __future__ import annotations
 
+from typing import TypeAlias
+
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, inline, jit
-from pin_metaik.kinematics.kernels import PATHS, costs, forward, jacobian, pose_error, poses, residual
-
-__all__ = ["costs", "descend", "linearize", "poses"]
+from pin_metaik.compiled import Floats, Ints, inline, shared
+from pin_metaik.kinematics.kernels import forward, jacobian, pose_error, residual
 
 PATIENCE = 4  # steps that must bring the squared error below `progress`, or the start is given up
 DAMPING_FLOOR = 1e-9  # what is left of the damping at a solution
-IDENTITY = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-
 POLISH = 1  # further steps once the tolerance is met, while each gains a decade
-LEAF, OPENED, TRIED = 64, 5, 8  # entries in a leaf of the atlas, leaves opened, entries tried before the given starts
+
+Work: TypeAlias = tuple[Floats, ...]
+
+
+@shared
+def workspace(n: int, m: int, S: int) -> Work:
+    """Scratch arrays of a descent: one allocation for all starts."""
+    axes, origins, pose, error = np.empty((S, 3)), np.empty((S, 3)), np.empty(12), np.empty(6)
+    r6, J6, H6, y6 = np.empty(6), np.empty((n, 6)), np.empty((6, 6)), np.empty(6)
+    r, J, H, y = np.empty(m), np.empty((n, m)), np.empty((m, m)), np.empty(m)
+    return axes, origins, pose, error, r6, J6, H6, y6, r, J, H, y, np.empty(n), np.empty(n), np.empty(n)
 
 
 @inline
@@ -180,78 +188,8 @@ def step(
         x[c] = min(max(x[c] + dx[c], lower[c]), upper[c])
 
 
-@jit(f"Tuple((f8, b1))({PATHS}, f8[:,::1], i8[:,::1], f8[::1], f8[::1], f8[:,::1])")
-def linearize(
-    joints: Floats,
-    wiring: Ints,
-    ends: Ints,
-    tips: Floats,
-    tasks: Floats,
-    rows: Ints,
-    x: Floats,
-    r: Floats,
-    J: Floats,
-) -> tuple[float, bool]:
-    """Weighted residual r (m,) and its Jacobian by coordinate J (n, m) at x; |r|^2 and whether the tolerances are met."""
-    n, S = x.shape[0], joints.shape[0]
-    axes, origins, pose, error = np.empty((S, 3)), np.empty((S, 3)), np.empty(12), np.empty(6)
-    r6, J6 = np.empty(6), np.empty((n, 6))
-    return evaluate(joints, wiring, ends, tips, tasks, rows, x, axes, origins, pose, error, r6, J6, r, J)
-
-
-@inline
-def target_feature(tasks: Floats, scale: float, goal: Floats, weights: Floats) -> None:
-    """Feature (9 T,) of the targets as the atlas has it, and weight 0 where they leave position or orientation free."""
-    for t in range(tasks.shape[0]):
-        task, at = tasks[t], 9 * t
-        placed = task[12] < np.inf and task[13] < np.inf and task[14] < np.inf
-        turned = task[15] < np.inf and task[16] < np.inf and task[17] < np.inf
-        for j in range(3):
-            goal[at + j] = -(task[j] * task[9] + task[3 + j] * task[10] + task[6 + j] * task[11])
-            goal[at + 3 + j] = scale * task[j]
-            goal[at + 6 + j] = scale * task[6 + j]
-            weights[at + j] = 1.0 if placed else 0.0
-            weights[at + 3 + j] = weights[at + 6 + j] = 1.0 if turned else 0.0
-
-
-@inline
-def merge_nearest(
-    leaf: Floats, number: int, goal: Floats, weights: Floats, away: Floats, found: Ints, distances: Floats
-) -> None:
-    """Merge the columns of a leaf (9 T, LEAF) into the nearest found so far, nearest first."""
-    away[:] = 0.0
-    for j in range(goal.shape[0]):
-        g, w, row = goal[j], weights[j], leaf[j]
-        for i in range(LEAF):
-            d = row[i] - g
-            away[i] += w * d * d
-    last = distances.shape[0] - 1
-    for i in range(LEAF):
-        if away[i] < distances[last]:
-            k = last
-            while k > 0 and distances[k - 1] > away[i]:
-                distances[k], found[k] = distances[k - 1], found[k - 1]
-                k -= 1
-            distances[k], found[k] = away[i], number * LEAF + i
-
-
-@inline
-def look_up(leaves: Floats, goal: Floats, weights: Floats, found: Ints, distances: Floats) -> None:
-    """The atlas entries nearest to the goal: found (TRIED,), nearest first, with their squared distances."""
-    away = np.empty(LEAF)
-    opened, spans = np.empty(OPENED, np.int64), np.full(OPENED, np.inf)
-    merge_nearest(leaves[0], 0, goal, weights, away, opened, spans)
-    distances[:] = np.inf
-    for k in range(OPENED):
-        leaf = opened[k]
-        merge_nearest(leaves[1 + leaf], leaf, goal, weights, away, found, distances)
-
-
-@jit(
-    f"UniTuple(i8, 2)({PATHS}, f8[:,::1], i8[:,::1], f8[::1], f8[::1], f8[:,:,::1], "
-    "f8[:,::1], f8, f8[:,::1], f8, f8, i8, i8, f8[::1])"
-)
-def descend(
+@shared
+def descend_from(
     joints: Floats,
     wiring: Ints,
     ends: Ints,
@@ -260,86 +198,50 @@ def descend(
     rows: Ints,
     lower: Floats,
     upper: Floats,
-    leaves: Floats,
-    entries: Floats,
-    scale: float,
-    starts: Floats,
+    start: Floats,
     damping: float,
     progress: float,
-    per_start: int,
-    evaluations: int,
+    steps: int,
+    least: float,
     best: Floats,
-) -> tuple[int, int]:
-    """Descend from one start after the other until one meets the tolerances or the evaluations are spent.
+    work: Work,
+) -> tuple[int, bool, float]:
+    """Descend from one start (n,) for at most ``steps`` evaluations.
 
-    The starts are the entries of the atlas nearest to the target, if there is one, and ``starts`` (s, n). The first of
-    those is somebody's guess: it goes before the entries when its pose is nearer, otherwise after them.
-
-    Returns the evaluations spent and the index of the start that met them, or -1; ``best`` (n,) gets the coordinates.
+    Returns the evaluations spent, whether the tolerances are met, and the least |r|^2 so far, here or before;
+    ``best`` (n,) gets the coordinates that have it.
     """
-    n, m, S, T = lower.shape[0], rows.shape[0], joints.shape[0], tips.shape[0]
-    whole = T == 1 and m == 6
+    axes, origins, pose, error, r6, J6, H6, y6, r, J, H, y, x, dx, held = work
+    whole = tips.shape[0] == 1 and rows.shape[0] == 6
     for j in range(6):
         whole = whole and tasks[0, 12 + j] == 0.0
-    axes, origins, pose, error = np.empty((S, 3)), np.empty((S, 3)), np.empty(12), np.empty(6)
-    r6, J6, r, J = np.empty(6), np.empty((n, 6)), np.empty(m), np.empty((n, m))
-    H6, y6, H, y = np.empty((6, 6)), np.empty(6), np.empty((m, m)), np.empty(m)
-    x, dx, held = np.empty(n), np.empty(n), np.empty(n)
-    best[:] = starts[0]
-    spent = 0
-    least = np.inf
-    tried = TRIED if leaves.shape[0] > 0 else 0
-    order, distances = np.empty(TRIED, np.int64), np.empty(TRIED)
-    if tried > 0:
-        goal, weights = np.empty(9 * T), np.empty(9 * T)
-        target_feature(tasks, scale, goal, weights)
-        look_up(leaves, goal, weights, order, distances)
-        away = 0.0
-        for t in range(T):
-            forward(joints, wiring, ends[t], ends[t + 1], tips[t], IDENTITY, starts[0], axes, origins, pose)
-            for j in range(3):
-                away += weights[9 * t + j] * (goal[9 * t + j] - pose[9 + j]) ** 2
-                away += weights[9 * t + 3 + j] * (goal[9 * t + 3 + j] - scale * pose[3 * j]) ** 2
-                away += weights[9 * t + 6 + j] * (goal[9 * t + 6 + j] - scale * pose[3 * j + 2]) ** 2
-        own = 0 if away <= distances[0] else TRIED
-    else:
-        own = 0
-    for k in range(tried + starts.shape[0]):
-        if k == own:
-            x[:] = starts[0]
-        elif k <= tried:
-            x[:] = entries[order[k - 1 if own == 0 else k]]
+    x[:] = start
+    mark = np.inf
+    found = False
+    polish = POLISH
+    for i in range(steps):
+        if whole:
+            square, solved = evaluate_pose(joints, wiring, tips[0], tasks[0], x, axes, origins, pose, error, r6, J6)
         else:
-            x[:] = starts[k - tried]
-        mark = np.inf
-        found = False
-        polish = POLISH
-        for i in range(per_start):
-            if spent >= evaluations:
-                return spent, k if found else -1
-            if whole:
-                square, solved = evaluate_pose(joints, wiring, tips[0], tasks[0], x, axes, origins, pose, error, r6, J6)
-            else:
-                square, solved = evaluate(
-                    joints, wiring, ends, tips, tasks, rows, x, axes, origins, pose, error, r6, J6, r, J
-                )
-            spent += 1
-            if found and not (solved and square < 0.01 * least):
-                return spent, k
-            if square < least or solved:
-                least = square
-                best[:] = x
-            if solved:
-                polish = polish - 1 if found else POLISH
-                found = True
-                if polish == 0 or square == 0.0:
-                    return spent, k
-            elif i % PATIENCE == 0:
-                if square > progress * mark:
-                    break
-                mark = square
-            if whole:
-                step(x, lower, upper, r6, J6, 6, damping * square + DAMPING_FLOOR, H6, y6, dx, held)
-            else:
-                step(x, lower, upper, r, J, m, damping * square + DAMPING_FLOOR, H, y, dx, held)
-    return spent, -1
+            square, solved = evaluate(
+                joints, wiring, ends, tips, tasks, rows, x, axes, origins, pose, error, r6, J6, r, J
+            )
+        if found and not (solved and square < 0.01 * least):
+            return i + 1, True, least
+        if square < least or solved:
+            least = square
+            best[:] = x
+        if solved:
+            polish = polish - 1 if found else POLISH
+            found = True
+            if polish == 0 or square == 0.0:
+                return i + 1, True, least
+        elif i % PATIENCE == 0:
+            if square > progress * mark:
+                return i + 1, False, least
+            mark = square
+        if whole:
+            step(x, lower, upper, r6, J6, 6, damping * square + DAMPING_FLOOR, H6, y6, dx, held)
+        else:
+            step(x, lower, upper, r, J, rows.shape[0], damping * square + DAMPING_FLOOR, H, y, dx, held)
+    return steps, found, least

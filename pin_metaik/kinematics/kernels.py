@@ -25,7 +25,7 @@ import math
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, exact, inline, jit
+from pin_metaik.compiled import Floats, Ints, exact, inline, jit, shared
 
 PATHS = "f8[:,::1], i8[:,::1], i8[::1], f8[:,::1]"  # joints, wiring, ends, tips
 
@@ -53,7 +53,7 @@ def cos_sin(x: float) -> tuple[float, float]:
     return c, s
 
 
-@inline
+@shared
 def forward(
     joints: Floats,
     wiring: Ints,
@@ -109,7 +109,7 @@ def forward(
     pose[11] = pz + g * P[9] + h * P[10] + i * P[11]
 
 
-@inline
+@shared
 def pose_error(pose: Floats, error: Floats) -> None:
     """Translation and rotation vector (6,) of a pose; exact near 0 and, through the symmetric part, near pi."""
     error[0], error[1], error[2] = pose[9], pose[10], pose[11]
@@ -149,7 +149,7 @@ def residual(task: Floats, error: Floats, r: Floats) -> tuple[float, float]:
     return position, orientation
 
 
-@inline
+@shared
 def jacobian(
     joints: Floats,
     wiring: Ints,

@@ -25,6 +25,7 @@ class Limits:
         upper: (n,) rad or m, ``inf`` where there is none.
         velocity: (n,) rad/s or m/s, ``inf`` where there is none.
         rotates: (n,) True for an angle, False for a travel.
+        winds: (n,) True for an angle that a whole turn does not change and whose limits leave room for one.
         names: The joint of each coordinate, for messages.
     """
 
@@ -32,6 +33,7 @@ class Limits:
     upper: NDArray[np.float64]
     velocity: NDArray[np.float64]
     rotates: NDArray[np.bool_]
+    winds: NDArray[np.bool_]
     names: tuple[str, ...]
 
     def __post_init__(self) -> None:
@@ -49,6 +51,11 @@ class Limits:
     @cached_property
     def _pairs(self) -> list[tuple[float, float]]:
         return list(zip(self.lower.tolist(), self.upper.tolist(), strict=True))
+
+    @cached_property
+    def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+        """Lower, upper and winds as every search takes them."""
+        return self.lower, self.upper, self.winds.astype(np.int64)
 
     @property
     def periodic(self) -> NDArray[np.bool_]:
@@ -78,6 +85,13 @@ class Limits:
         """The nearest coordinates inside the limits; periodic ones are left as they are."""
         return np.minimum(np.maximum(x, self.lower), self.upper)
 
+    def nearest_turns(self, x: NDArray[np.float64], x0: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Coordinates x (..., n), each winding angle moved by whole turns to be nearest to x0 inside its limits."""
+        turn = 2.0 * np.pi
+        turns = np.round((x0 - x) / turn)
+        turns = np.minimum(np.maximum(turns, np.ceil((self.lower - x) / turn)), np.floor((self.upper - x) / turn))
+        return np.where(self.winds, self.clip(x + turn * turns), x)
+
     def contains(self, x: NDArray[np.float64], tolerance: float = 0.0) -> bool:
         """Whether every coordinate is inside its limits, up to ``tolerance`` (rad or m)."""
         # Plain floats: on a handful of numbers three times quicker than numpy's reductions.
@@ -99,7 +113,8 @@ class Limits:
                 )
             i = self.names.index(name)
             lower[i], upper[i] = _pair(name, span)
-        return Limits(lower, upper, self.velocity, self.rotates, self.names)
+        winds = self.winds & (upper - lower >= 2.0 * np.pi)
+        return Limits(lower, upper, self.velocity, self.rotates, winds, self.names)
 
 
 def finite_or_infinite(values: ArrayLike) -> NDArray[np.float64]:

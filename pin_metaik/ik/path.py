@@ -1,0 +1,188 @@
+"""A sequence of poses with bounded joint steps, or the places where there is none.
+
+Every pose gets a layer of solutions: those followed from the layer before it and after it, and some found afresh. The
+best way through the layers is found by dynamic programming: the fewest breaks first, then the shortest way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pin_metaik.errors import InvalidSetting, InvalidTarget
+from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.solutions import gather
+from pin_metaik.ik.starts import Rng, drawn
+from pin_metaik.ik.target import TargetLike
+from pin_metaik.kinematics import Chain
+
+WIDEST = 48  # solutions in a layer
+FRESH = 24  # starts from the atlas and as many random ones for a layer of its own
+APART = 1e-2  # rad or m between solutions of one layer
+EVALUATIONS = 10_000  # for one layer, each way
+
+
+@dataclass(frozen=True, eq=False)
+class IKPath:
+    """One configuration for each pose of a path.
+
+    Attributes:
+        q: (k, nq) configurations; angles run on through whole turns where limits allow.
+        success: (k,) whether each pose is met, by Pinocchio.
+        breaks: Numbers i of the poses that cannot be reached from pose i - 1 within the step bound.
+        longest_step: Largest step of any joint between poses without a break, rad or m.
+        seconds: Time taken, s.
+        chain: The chain.
+    """
+
+    q: NDArray[np.float64]
+    success: NDArray[np.bool_]
+    breaks: tuple[int, ...]
+    longest_step: float
+    seconds: float
+    chain: Chain = field(repr=False)
+
+    @property
+    def continuous(self) -> bool:
+        """Whether every pose is met and no step is longer than the bound."""
+        return bool(self.success.all()) and not self.breaks
+
+    @property
+    def x(self) -> NDArray[np.float64]:
+        """(k, n) the chain's coordinates; those of continuous joints run on through whole turns."""
+        x = self.chain.x(self.q)
+        periodic = self.chain.limits.periodic
+        x[:, periodic] = np.unwrap(x[:, periodic], axis=0)
+        return x
+
+
+def solve_ik_path(
+    chain: Chain,
+    targets: Sequence[TargetLike] | NDArray[np.float64],
+    q0: ArrayLike | None = None,
+    *,
+    max_step: float | ArrayLike = 0.2,
+    rng: Rng = None,
+) -> IKPath:
+    """Follow a sequence of poses without jumps.
+
+    Args:
+        chain: The joints to move and the frame to place.
+        targets: k targets, as for ``solve_ik``; close enough to each other for the step bound.
+        q0: (nq,) configuration the path should start near; default: wherever the path as a whole is best.
+        max_step: Largest step of a joint from one pose to the next, rad or m: one number, or (n,) one a joint.
+        rng: Seed or generator; ``None`` is a fixed seed.
+
+    Returns:
+        The path. Where it is not continuous, ``breaks`` and ``success`` say where: nothing jumps silently.
+
+    Raises:
+        InvalidTarget: If there are no targets, or one of them is none.
+        InvalidSetting: If ``max_step`` is not above zero.
+        InvalidConfiguration: If ``q0`` is not a configuration of the model.
+    """
+    began = perf_counter()
+    if len(targets) == 0:
+        raise InvalidTarget("a path has at least one target")
+    bound = np.broadcast_to(np.asarray(max_step, dtype=float), (chain.n,))
+    if not (bound > 0.0).all():
+        raise InvalidSetting(f"max_step is above 0, got {bound}")
+    base = chain.reference if q0 is None else chain.configuration(q0)
+    problems = [IKProblem.of(chain, target) for target in targets]
+    layers = _layers(problems, chain.x(base), q0 is not None, rng)
+    x, breaks = _best_way(chain, layers, bound, None if q0 is None else chain.x(base))
+    q = chain.q(x, base)
+    success = np.array([problem.accepts(one) for problem, one in zip(problems, q, strict=True)])
+    steps = np.abs(_steps(chain, x[:-1], x[1:])).max(axis=1, initial=0.0)
+    steps[[i - 1 for i in breaks]] = 0.0
+    return IKPath(q, success, tuple(breaks), float(steps.max(initial=0.0)), perf_counter() - began, chain)
+
+
+def _layers(problems: list[IKProblem], x0: NDArray[np.float64], near: bool, rng: Rng) -> list[NDArray[np.float64]]:
+    """Solutions (s, n) of every pose; empty where none was found."""
+    layers: list[NDArray[np.float64]] = []
+    followed = x0[None] if near else np.empty((0, len(x0)))
+    for index, problem in enumerate(problems):
+        fresh = np.concatenate([problem.near(FRESH), drawn(problem.chain, rng, index, FRESH)])
+        layer = _widened(problem, np.empty((0, len(x0))), followed, followed=True)
+        layer = _widened(problem, layer, fresh)
+        layers.append(layer)
+        followed = layer if len(layer) else followed
+    for i in range(len(problems) - 2, -1, -1):  # what only a later pose found may have begun earlier
+        layers[i] = _widened(problems[i], layers[i], layers[i + 1], followed=True)
+    return layers
+
+
+def _widened(
+    problem: IKProblem, layer: NDArray[np.float64], starts: NDArray[np.float64], followed: bool = False
+) -> NDArray[np.float64]:
+    """A layer with the solutions that these starts lead to; those found afresh must leave room for followed ones."""
+    room = WIDEST if followed else WIDEST // 2
+    if len(layer) >= room or not len(starts):
+        return layer
+    found = np.empty((room, problem.chain.n))
+    found[: len(layer)] = layer
+    _, known, _ = gather(problem, starts, found, len(layer), APART, len(starts) + 1, EVALUATIONS, branch=False)
+    return found[:known]
+
+
+def _steps(chain: Chain, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Joint steps from a to b (..., n); a continuous joint takes the shorter way round."""
+    step = b - a
+    periodic = chain.limits.periodic
+    step[..., periodic] -= 2.0 * np.pi * np.round(step[..., periodic] / (2.0 * np.pi))
+    return step
+
+
+def _best_way(
+    chain: Chain, layers: list[NDArray[np.float64]], bound: NDArray[np.float64], x0: NDArray[np.float64] | None
+) -> tuple[NDArray[np.float64], list[int]]:
+    """Coordinates (k, n) with the fewest breaks, then the shortest way, and the poses that a break comes before.
+
+    A pose without a solution keeps the joints where the pose before it had them.
+    """
+    jump = 1e6  # dearer than any way
+    here = layers[0]
+    costs = np.zeros(len(here)) if x0 is None else np.linalg.norm(_steps(chain, x0, here), axis=1)
+    trail: list[tuple[int, NDArray[np.int64]]] = [(0, np.zeros(0, np.int64))] if len(here) else []
+    for i in range(1, len(layers)):
+        if not len(layers[i]):
+            continue
+        if not len(here):
+            here, costs = layers[i], np.zeros(len(layers[i]))
+            trail.append((i, np.zeros(0, np.int64)))
+            continue
+        step = _steps(chain, here[:, None], layers[i][None])  # (a, b, n)
+        broken = (np.abs(step) > bound).any(axis=2)
+        total = costs[:, None] + np.linalg.norm(step, axis=2) + jump * broken
+        before = total.argmin(axis=0)
+        here, costs = layers[i], total[before, np.arange(len(layers[i]))]
+        trail.append((i, before))
+    return _traced(chain, layers, bound, trail, costs, x0)
+
+
+def _traced(
+    chain: Chain,
+    layers: list[NDArray[np.float64]],
+    bound: NDArray[np.float64],
+    trail: list[tuple[int, NDArray[np.int64]]],
+    costs: NDArray[np.float64],
+    x0: NDArray[np.float64] | None,
+) -> tuple[NDArray[np.float64], list[int]]:
+    """The way back from the cheapest end."""
+    x = np.empty((len(layers), chain.n))
+    solved = {}
+    at = int(costs.argmin()) if trail else 0
+    for i, before in reversed(trail):
+        solved[i] = layers[i][at]
+        at = int(before[at]) if len(before) else 0
+    last = chain.limits.clip(chain.x(chain.reference)) if x0 is None else x0
+    last = solved[min(solved)] if solved else last
+    for i in range(len(layers)):
+        last = x[i] = solved.get(i, last)
+    steps = _steps(chain, x[:-1], x[1:])
+    return x, [int(i) + 1 for i in np.flatnonzero((np.abs(steps) > bound).any(axis=1))]

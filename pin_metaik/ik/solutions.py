@@ -1,0 +1,167 @@
+"""All solutions of one target: the set a choice is made from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import count
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pin_metaik.errors import InvalidBudget, InvalidSetting
+from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.refine.dls import DLS, PROGRESS
+from pin_metaik.ik.starts import Rng, drawn
+from pin_metaik.ik.target import TargetLike
+from pin_metaik.kinematics import Chain
+from pin_metaik.optimize import Budget
+
+BATCH = 128  # starts between two looks at what came of them
+VAIN = 60  # starts in a row that led to nothing new ...
+VAIN_EACH = 15  # ... and as many more for each solution known, before the set counts as complete
+SETTINGS = DLS()
+DEFAULT_BUDGET = Budget(evaluations=200_000)
+
+
+@dataclass(frozen=True, eq=False)
+class IKSolutions:
+    """Distinct solutions of one problem, the nearest to the start first.
+
+    Attributes:
+        q: (s, nq) configurations, each judged by Pinocchio.
+        complete: Whether the search ended because nothing new appeared. A chain with more joints than its target needs
+            has endlessly many solutions: then this is a sample, and False.
+        evaluations: Forward kinematics computed.
+        seconds: Time taken, s.
+        problem: What was asked.
+    """
+
+    q: NDArray[np.float64]
+    complete: bool
+    evaluations: int
+    seconds: float
+    problem: IKProblem = field(repr=False)
+
+    @property
+    def x(self) -> NDArray[np.float64]:
+        """(s, n) the chain's coordinates."""
+        return self.problem.chain.x(self.q)
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+    def __iter__(self) -> Iterator[NDArray[np.float64]]:
+        return iter(self.q)
+
+
+def solve_ik_all(
+    chain: Chain,
+    target: TargetLike | Sequence[TargetLike],
+    q0: ArrayLike | None = None,
+    *,
+    limit: int = 64,
+    apart: float = 1e-2,
+    budget: Budget = DEFAULT_BUDGET,
+    rng: Rng = None,
+) -> IKSolutions:
+    """Find all distinct solutions of a target, until no new one appears.
+
+    Solutions that differ by whole turns count as one and come as the copy nearest to ``q0``. Descents start from an
+    atlas of the chain, from random configurations, and from the solutions known with one joint turned half round.
+
+    Args:
+        chain: The joints to move and the frames to place.
+        target: As for ``solve_ik``.
+        q0: (nq,) configuration the solutions are ordered by; default: the chain's reference.
+        limit: Solutions to stop at; what ends the search on redundant chains.
+        apart: rad or m by which some coordinate of two solutions must differ.
+        budget: Evaluations (and seconds, which are not reproducible) that may be spent.
+        rng: Seed or generator; ``None`` is a fixed seed.
+
+    Raises:
+        InvalidTarget: If the target is not a pose, position or orientation.
+        InvalidConfiguration: If ``q0`` is not a configuration of the model.
+        InvalidSetting: If ``limit`` or ``apart`` is not above zero.
+        InvalidBudget: If the budget has no limit on evaluations.
+    """
+    if limit < 1 or not apart > 0.0:
+        raise InvalidSetting(f"limit is at least 1 and apart above 0, got {limit} and {apart}")
+    if budget.evaluations is None:
+        raise InvalidBudget("collecting solutions needs a budget of evaluations: Budget(evaluations=...)")
+    began = perf_counter()
+    problem = IKProblem.of(chain, target)
+    base = chain.reference if q0 is None else chain.configuration(q0)
+    x0 = chain.x(base)
+    found, complete, spent = collect(problem, x0, rng, limit=limit, apart=apart, budget=budget)
+    found = chain.limits.nearest_turns(found, x0)
+    found = found[np.argsort(np.linalg.norm(found - x0, axis=1), kind="stable")]
+    q = chain.q(found, base)
+    judged = [problem.accepts(one) for one in q]
+    return IKSolutions(q[judged], complete, spent, perf_counter() - began, problem)
+
+
+def collect(
+    problem: IKProblem,
+    x0: NDArray[np.float64],
+    rng: Rng,
+    *,
+    limit: int,
+    apart: float,
+    budget: Budget,
+) -> tuple[NDArray[np.float64], bool, int]:
+    """Distinct solutions (s, n), whether the set is complete, and the evaluations spent."""
+    began = perf_counter()
+    found = np.empty((limit, problem.chain.n))
+    total = budget.evaluations or 0
+    known = vain = spent = 0
+    for index in count():
+        starts = drawn(problem.chain, rng, index, BATCH)
+        if index == 0:
+            starts = np.concatenate([x0[None], problem.near(BATCH), starts])
+        evaluations, more, row = gather(
+            problem, starts, found, known, apart, VAIN + VAIN_EACH * known - vain, total - spent
+        )
+        vain = vain + row if more == known else row
+        known, spent = more, spent + evaluations
+        enough = VAIN + VAIN_EACH * known
+        late = budget.seconds is not None and perf_counter() - began >= budget.seconds
+        if known == limit or spent >= total or late or (vain >= enough) or (known == 0 and problem.gap > 0.0):
+            return found[:known], known < limit and vain >= enough, spent
+    raise AssertionError("count() does not end")
+
+
+def gather(
+    problem: IKProblem,
+    starts: NDArray[np.float64],
+    found: NDArray[np.float64],
+    known: int,
+    apart: float,
+    patience: int,
+    evaluations: int,
+    *,
+    branch: bool = True,
+) -> tuple[int, int, int]:
+    """Descend from each start (s, n) and add what is new to ``found``, of which ``known`` rows are taken.
+
+    Returns evaluations, rows taken, and how many starts in a row led to nothing new at the end.
+    """
+    chain = problem.chain
+    result: tuple[int, int, int] = chain.kernels.descend_all(
+        *chain.paths.arrays,
+        problem.tasks,
+        problem.rows,
+        *chain.limits.arrays,
+        np.ascontiguousarray(starts),
+        apart,
+        patience,
+        branch,
+        SETTINGS.damping,
+        PROGRESS,
+        SETTINGS.iterations,
+        evaluations,
+        found,
+        known,
+    )
+    return result

@@ -1,0 +1,387 @@
+"""The compiled searches: from one start after the other, for one target, for many, or for all solutions of one."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pin_metaik.compiled import Floats, Ints, inline, jit, shared
+from pin_metaik.kinematics.descent import Work, descend_from, evaluate, workspace
+from pin_metaik.kinematics.kernels import PATHS, costs, forward, poses
+
+__all__ = ["costs", "descend", "descend_all", "descend_batch", "linearize", "neighbours", "poses"]
+
+ATLAS = "f8[:,:,::1], f8[:,::1], f8"  # leaves, entries, scale
+
+TURN = 2.0 * np.pi
+IDENTITY = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+
+LEAF, OPENED, TRIED = 64, 5, 8  # entries in a leaf of the atlas, leaves opened, entries tried before the given starts
+
+
+@jit(f"Tuple((f8, b1))({PATHS}, f8[:,::1], i8[:,::1], f8[::1], f8[::1], f8[:,::1])")
+def linearize(
+    joints: Floats,
+    wiring: Ints,
+    ends: Ints,
+    tips: Floats,
+    tasks: Floats,
+    rows: Ints,
+    x: Floats,
+    r: Floats,
+    J: Floats,
+) -> tuple[float, bool]:
+    """Weighted residual r (m,) and Jacobian by coordinate J (n, m) at x; also |r|^2 and whether all is in tolerance."""
+    n, S = x.shape[0], joints.shape[0]
+    axes, origins, pose, error = np.empty((S, 3)), np.empty((S, 3)), np.empty(12), np.empty(6)
+    r6, J6 = np.empty(6), np.empty((n, 6))
+    return evaluate(joints, wiring, ends, tips, tasks, rows, x, axes, origins, pose, error, r6, J6, r, J)
+
+
+@inline
+def target_feature(tasks: Floats, scale: float, goal: Floats, weights: Floats) -> None:
+    """Feature (9 T,) of the targets as the atlas has it, and weight 0 where they leave position or orientation free."""
+    for t in range(tasks.shape[0]):
+        task, at = tasks[t], 9 * t
+        placed = task[12] < np.inf and task[13] < np.inf and task[14] < np.inf
+        turned = task[15] < np.inf and task[16] < np.inf and task[17] < np.inf
+        for j in range(3):
+            goal[at + j] = -(task[j] * task[9] + task[3 + j] * task[10] + task[6 + j] * task[11])
+            goal[at + 3 + j] = scale * task[j]
+            goal[at + 6 + j] = scale * task[6 + j]
+            weights[at + j] = 1.0 if placed else 0.0
+            weights[at + 3 + j] = weights[at + 6 + j] = 1.0 if turned else 0.0
+
+
+@inline
+def merge_nearest(
+    leaf: Floats, number: int, goal: Floats, weights: Floats, away: Floats, found: Ints, distances: Floats
+) -> None:
+    """Merge the columns of a leaf (9 T, LEAF) into the nearest found so far, nearest first."""
+    away[:] = 0.0
+    for j in range(goal.shape[0]):
+        g, w, row = goal[j], weights[j], leaf[j]
+        for i in range(LEAF):
+            d = row[i] - g
+            away[i] += w * d * d
+    last = distances.shape[0] - 1
+    for i in range(LEAF):
+        if away[i] < distances[last]:
+            k = last
+            while k > 0 and distances[k - 1] > away[i]:
+                distances[k], found[k] = distances[k - 1], found[k - 1]
+                k -= 1
+            distances[k], found[k] = away[i], number * LEAF + i
+
+
+@inline
+def look_up(leaves: Floats, goal: Floats, weights: Floats, found: Ints, distances: Floats) -> None:
+    """The atlas entries nearest to the goal: found (TRIED,), nearest first, with their squared distances."""
+    away = np.empty(LEAF)
+    opened, spans = np.empty(OPENED, np.int64), np.full(OPENED, np.inf)
+    merge_nearest(leaves[0], 0, goal, weights, away, opened, spans)
+    distances[:] = np.inf
+    for k in range(OPENED):
+        leaf = opened[k]
+        merge_nearest(leaves[1 + leaf], leaf, goal, weights, away, found, distances)
+
+
+@inline
+def unwind(x: Floats, x0: Floats, lower: Floats, upper: Floats, winds: Ints) -> None:
+    """Move each winding angle by the whole turns that bring it nearest to x0 inside its limits."""
+    for c in range(x.shape[0]):
+        if winds[c] == 1:
+            turns = np.round((x0[c] - x[c]) / TURN)
+            turns = min(max(turns, np.ceil((lower[c] - x[c]) / TURN)), np.floor((upper[c] - x[c]) / TURN))
+            x[c] = min(max(x[c] + TURN * turns, lower[c]), upper[c])
+
+
+@shared
+def search(
+    joints: Floats,
+    wiring: Ints,
+    ends: Ints,
+    tips: Floats,
+    tasks: Floats,
+    rows: Ints,
+    lower: Floats,
+    upper: Floats,
+    winds: Ints,
+    leaves: Floats,
+    entries: Floats,
+    scale: float,
+    starts: Floats,
+    damping: float,
+    progress: float,
+    per_start: int,
+    evaluations: int,
+    best: Floats,
+    work: Work,
+) -> tuple[int, int]:
+    """Descend from one start after the other until one meets the tolerances or the evaluations are spent.
+
+    The starts are the entries of the atlas nearest to the target, if there is one, and ``starts`` (s, n). The first of
+    those is somebody's guess: it goes before the entries when its pose is nearer, otherwise after them.
+
+    Returns the evaluations spent and the number of the start that met them, or -1; ``best`` (n,) gets the coordinates.
+    """
+    T = tips.shape[0]
+    tried = TRIED if leaves.shape[0] > 0 else 0
+    own = 0
+    order, distances = np.empty(TRIED, np.int64), np.empty(TRIED)
+    if tried > 0:
+        goal, weights = np.empty(9 * T), np.empty(9 * T)
+        target_feature(tasks, scale, goal, weights)
+        look_up(leaves, goal, weights, order, distances)
+        axes, origins, pose = work[0], work[1], work[2]
+        away = 0.0
+        for t in range(T):
+            forward(joints, wiring, ends[t], ends[t + 1], tips[t], IDENTITY, starts[0], axes, origins, pose)
+            for j in range(3):
+                away += weights[9 * t + j] * (goal[9 * t + j] - pose[9 + j]) ** 2
+                away += weights[9 * t + 3 + j] * (goal[9 * t + 3 + j] - scale * pose[3 * j]) ** 2
+                away += weights[9 * t + 6 + j] * (goal[9 * t + 6 + j] - scale * pose[3 * j + 2]) ** 2
+        own = 0 if away <= distances[0] else TRIED
+    best[:] = starts[0]
+    spent = 0
+    least = np.inf
+    for k in range(tried + starts.shape[0]):
+        if spent >= evaluations:
+            break
+        if k == own:
+            start = starts[0]
+        elif k <= tried:
+            start = entries[order[k - 1 if own == 0 else k]]
+        else:
+            start = starts[k - tried]
+        steps, met, least = descend_from(
+            joints,
+            wiring,
+            ends,
+            tips,
+            tasks,
+            rows,
+            lower,
+            upper,
+            start,
+            damping,
+            progress,
+            min(per_start, evaluations - spent),
+            least,
+            best,
+            work,
+        )
+        spent += steps
+        if met:
+            unwind(best, starts[0], lower, upper, winds)
+            return spent, k
+    return spent, -1
+
+
+@jit(f"void(f8[:,::1], {ATLAS}, i8, f8[:,::1])")
+def neighbours(tasks: Floats, leaves: Floats, entries: Floats, scale: float, count: int, out: Floats) -> None:
+    """The ``count`` atlas entries (count, n) nearest to the targets, nearest first."""
+    T = tasks.shape[0]
+    goal, weights, away = np.empty(9 * T), np.empty(9 * T), np.empty(LEAF)
+    target_feature(tasks, scale, goal, weights)
+    order, distances = np.zeros(count, np.int64), np.full(count, np.inf)
+    for leaf in range(leaves.shape[0] - 1):
+        merge_nearest(leaves[1 + leaf], leaf, goal, weights, away, order, distances)
+    for k in range(count):
+        out[k] = entries[order[k]]
+
+
+BOUNDS = "f8[::1], f8[::1], i8[::1]"  # lower, upper, winds
+PROBLEM = f"{PATHS}, f8[:,::1], i8[:,::1], {BOUNDS}"  # ..., tasks, rows, ...
+SETTINGS = "f8, f8, i8, i8"  # damping, progress, evaluations from one start, evaluations
+
+
+@jit(f"UniTuple(i8, 2)({PROBLEM}, {ATLAS}, f8[:,::1], {SETTINGS}, f8[::1])")
+def descend(
+    joints: Floats,
+    wiring: Ints,
+    ends: Ints,
+    tips: Floats,
+    tasks: Floats,
+    rows: Ints,
+    lower: Floats,
+    upper: Floats,
+    winds: Ints,
+    leaves: Floats,
+    entries: Floats,
+    scale: float,
+    starts: Floats,
+    damping: float,
+    progress: float,
+    per_start: int,
+    evaluations: int,
+    best: Floats,
+) -> tuple[int, int]:
+    """``search`` for one problem."""
+    work = workspace(lower.shape[0], rows.shape[0], joints.shape[0])
+    return search(
+        joints,
+        wiring,
+        ends,
+        tips,
+        tasks,
+        rows,
+        lower,
+        upper,
+        winds,
+        leaves,
+        entries,
+        scale,
+        starts,
+        damping,
+        progress,
+        per_start,
+        evaluations,
+        best,
+        work,
+    )
+
+
+@jit(
+    f"void({PATHS}, f8[:,:,::1], i8[:,::1], {BOUNDS}, {ATLAS}, f8[:,::1], f8[:,::1], {SETTINGS}, "
+    "f8[:,::1], i8[::1], i8[::1])"
+)
+def descend_batch(
+    joints: Floats,
+    wiring: Ints,
+    ends: Ints,
+    tips: Floats,
+    tasks: Floats,
+    rows: Ints,
+    lower: Floats,
+    upper: Floats,
+    winds: Ints,
+    leaves: Floats,
+    entries: Floats,
+    scale: float,
+    guesses: Floats,
+    starts: Floats,
+    damping: float,
+    progress: float,
+    per_start: int,
+    evaluations: int,
+    best: Floats,
+    spent: Ints,
+    solved_by: Ints,
+) -> None:
+    """``search`` for many targets: tasks (k, T, 26), a guess (k, n) for each, the same further starts (s, n) for all.
+
+    Row i of ``best`` (k, n), ``spent`` (k,) and ``solved_by`` (k,) is what ``descend`` gives for target i alone.
+    """
+    work = workspace(lower.shape[0], rows.shape[0], joints.shape[0])
+    own = starts.copy()
+    for i in range(tasks.shape[0]):
+        own[0] = guesses[i]
+        spent[i], solved_by[i] = search(
+            joints,
+            wiring,
+            ends,
+            tips,
+            tasks[i],
+            rows,
+            lower,
+            upper,
+            winds,
+            leaves,
+            entries,
+            scale,
+            own,
+            damping,
+            progress,
+            per_start,
+            evaluations,
+            best[i],
+            work,
+        )
+
+
+@inline
+def is_new(x: Floats, solutions: Floats, count: int, winds: Ints, apart: float) -> bool:
+    """Whether x differs by more than ``apart`` in some coordinate, whole turns aside, from the solutions so far."""
+    for s in range(count):
+        same = True
+        for c in range(x.shape[0]):
+            d = x[c] - solutions[s, c]
+            if winds[c] == 1:
+                d -= TURN * np.round(d / TURN)
+            same = same and abs(d) <= apart
+        if same:
+            return False
+    return True
+
+
+@jit(f"UniTuple(i8, 3)({PROBLEM}, f8[:,::1], f8, i8, b1, {SETTINGS}, f8[:,::1], i8)")
+def descend_all(
+    joints: Floats,
+    wiring: Ints,
+    ends: Ints,
+    tips: Floats,
+    tasks: Floats,
+    rows: Ints,
+    lower: Floats,
+    upper: Floats,
+    winds: Ints,
+    starts: Floats,
+    apart: float,
+    patience: int,
+    branch: bool,
+    damping: float,
+    progress: float,
+    per_start: int,
+    evaluations: int,
+    solutions: Floats,
+    known: int,
+) -> tuple[int, int, int]:
+    """Collect distinct solutions (l, n) from the starts (s, n), ``known`` of them being there already.
+
+    Stops when the starts, the evaluations or the room for solutions are used up, or when ``patience`` starts in a row
+    that met the tolerances brought nothing new. With ``branch`` each solution is started from again with one joint
+    moved by pi, which is where others often are. Returns evaluations, solutions and the length of the last vain row.
+    """
+    n = lower.shape[0]
+    work = workspace(n, rows.shape[0], joints.shape[0])
+    x, start = np.empty(n), np.empty(n)
+    spent, count, vain = 0, known, 0
+    turned = n * known  # half-turn starts already taken: joint turned % n of solution turned // n
+    given = 0
+    while spent < evaluations and count < solutions.shape[0] and vain < patience:
+        if branch and turned < n * count:
+            start[:] = solutions[turned // n]
+            c = turned % n
+            turned += 1
+            start[c] += -np.pi if start[c] + np.pi > upper[c] else np.pi
+            start[c] = min(max(start[c], lower[c]), upper[c])
+        elif given < starts.shape[0]:
+            start[:] = starts[given]
+            given += 1
+        else:
+            break
+        steps, met, _ = descend_from(
+            joints,
+            wiring,
+            ends,
+            tips,
+            tasks,
+            rows,
+            lower,
+            upper,
+            start,
+            damping,
+            progress,
+            min(per_start, evaluations - spent),
+            np.inf,
+            x,
+            work,
+        )
+        spent += steps
+        if met:
+            vain += 1
+            if is_new(x, solutions, count, winds, apart):
+                solutions[count] = x
+                count += 1
+                vain = 0
+    return spent, count, vain
