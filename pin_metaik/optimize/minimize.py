@@ -1,0 +1,102 @@
+"""Minimise a function over a box with any metaheuristic: the one place that evaluates, counts and stops."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pin_metaik.errors import InvalidBudget
+from pin_metaik.optimize.asktell import AskTell, Status
+from pin_metaik.optimize.budget import Budget
+from pin_metaik.optimize.search import Metaheuristic
+from pin_metaik.optimize.space import Array, Box
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What a search found and why it ended.
+
+    Attributes:
+        x: The best point evaluated (n,), inside the box.
+        cost: Its cost.
+        status: Why the search ended.
+        evaluations: Function evaluations spent.
+        generations: Batches evaluated.
+        seconds: Time spent, in s.
+        trace: Evaluations and best cost after each generation (g, 2), when asked for.
+        elite: The best points evaluated (m, n), best first, without exact repeats; m <= keep.
+        elite_costs: Their costs (m,).
+    """
+
+    x: Array
+    cost: float
+    status: Status
+    evaluations: int
+    generations: int
+    seconds: float
+    trace: Array | None
+    elite: Array
+    elite_costs: Array
+
+
+def minimize(
+    objective: Callable[[Array], ArrayLike],
+    box: Box,
+    algorithm: str | Metaheuristic,
+    budget: Budget,
+    rng: int | np.random.Generator | None = 0,
+    *,
+    seeds: ArrayLike | None = None,
+    trace: bool = False,
+    callback: Callable[[AskTell], bool | None] | None = None,
+    keep: int = 1,
+) -> Result:
+    """Search the box for a point of least cost.
+
+    Ctrl-C ends the search and returns the best point so far (unless there is none yet: then it goes through).
+
+    Args:
+        objective: Costs (k,) of points (k, n); the array it gets is its own. NaN counts as +inf.
+        box: Where to search.
+        algorithm: A name of the registry or an object with a `search` method.
+        budget: When to stop; needs `evaluations` or `seconds`.
+        rng: Seed or generator: the same seed gives the same answer bit for bit, unless the budget is in seconds.
+        seeds: Points to start from (s, n) or (n,), clipped to the box. An algorithm uses as many as it has agents.
+        trace: Whether to record the best cost after every generation.
+        callback: Called after every generation with the running search; returning True ends it as interrupted.
+        keep: How many of the best points to return in `Result.elite`.
+
+    Raises:
+        UnknownName: No algorithm of that name.
+        InvalidBudget: The budget would never end.
+        InvalidSetting: Costs of the wrong shape; seeds or `keep` that make no sense; an algorithm that leaves the box.
+    """
+    if not budget.ends:
+        raise InvalidBudget("this search might never end: give the budget evaluations=... or seconds=...")
+    search = AskTell(box, algorithm, rng, seeds, budget, keep=keep)
+    history: list[tuple[float, float]] = []
+    try:
+        while search.status is None:
+            search.tell(objective(search.ask()))
+            if trace:
+                history.append((search.run.evaluations, search.elite.costs[0]))
+            if callback is not None and callback(search):
+                search.stop()
+    except KeyboardInterrupt:
+        if search.generations == 0:
+            raise
+        search.stop()
+    return Result(
+        x=search.best.x,
+        cost=search.best.cost,
+        status=search.status or Status.INTERRUPTED,
+        evaluations=search.run.evaluations,
+        generations=search.generations,
+        seconds=search.run.seconds,
+        trace=np.array(history).reshape(-1, 2) if trace else None,
+        elite=search.elite.X,
+        elite_costs=search.elite.costs,
+    )

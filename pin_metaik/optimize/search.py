@@ -1,0 +1,75 @@
+"""What a metaheuristic is, and all it may see of the search it runs in."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from time import perf_counter
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from pin_metaik.optimize.budget import Budget
+from pin_metaik.optimize.space import Array, Box
+
+
+class Search:
+    """One run as the algorithm sees it.
+
+    Attributes:
+        space: The box every point must lie in.
+        rng: The only source of randomness.
+        seeds: Points given to start from (s, n), already inside the box; s may be 0.
+        evaluations: Function evaluations spent so far. The caller counts; algorithms only read.
+    """
+
+    def __init__(self, space: Box, rng: np.random.Generator, seeds: Array, budget: Budget) -> None:
+        self.space = space
+        self.rng = rng
+        self.seeds = seeds
+        self.evaluations = 0
+        self._budget = budget
+        self._began = perf_counter()
+
+    @property
+    def progress(self) -> float:
+        """Share of the budget spent, 0 to 1: what papers write as t / MaxIter.
+
+        Counted in evaluations; in seconds when the budget has nothing else; 0 for ever without a budget.
+        """
+        if self._budget.evaluations is not None:
+            return min(1.0, self.evaluations / self._budget.evaluations)
+        if self._budget.seconds is not None:
+            return min(1.0, self.seconds / self._budget.seconds)
+        return 0.0
+
+    @property
+    def remaining(self) -> int | None:
+        """Evaluations left; None when they are not limited."""
+        return None if self._budget.evaluations is None else self._budget.evaluations - self.evaluations
+
+    @property
+    def seconds(self) -> float:
+        """Time since the search began, in s."""
+        return perf_counter() - self._began
+
+    def start(self, count: int) -> Array:
+        """An initial population (count, n): the first `count` seeds, then points drawn uniformly."""
+        given = self.seeds[:count]
+        return np.concatenate((given, self.space.sample(self.rng, count - len(given))))
+
+
+@runtime_checkable
+class Metaheuristic(Protocol):
+    """Anything that proposes points and learns from their costs: one method is all it takes.
+
+    The method is a generator: ``costs = yield X`` hands out points X (k, n), k >= 1, inside ``run.space`` and gets back
+    their costs (k,), its own to keep or to overwrite; smaller is better, +inf is a point that does not count. It loops
+    for ever: whoever drives it evaluates, counts, and closes it when the budget is spent. The last batch may be cut
+    short, in which case its costs never come back. X is copied when it is handed out.
+
+    Its settings are fields of a frozen dataclass.
+    """
+
+    def search(self, run: Search) -> Generator[Array, Array, None]:
+        """Propose populations (k, n), receive their costs (k,), for ever."""
+        ...

@@ -1,0 +1,114 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pin_metaik.optimize import AskTell, Box, Budget, minimize
+from pin_metaik.optimize.sfla import SFLA
+
+BOX = Box([-1.0, -1.0, -1.0], [2.0, 2.0, 2.0])
+
+
+def dealt(X, f, m):
+    """Memeplexes as lists of frogs, best first, as the paper deals them."""
+    order = f.argsort(kind="stable")
+    return [X[order[j::m]] for j in range(m)]
+
+
+def between(x, start, leader, reach):
+    """Whether x lies on the way from start to leader, as far as reach times the way, coordinate by coordinate."""
+    shares = (x - start) / (leader - start)
+    return bool(((shares >= -1e-12) & (shares <= reach + 1e-12)).all())
+
+
+@pytest.mark.parametrize("frogs", [12, 13, 14])
+def test_only_the_worst_frog_of_each_memeplex_leaps_towards_its_best(frogs):
+    search = AskTell(
+        Box([-9.0] * 3, [9.0] * 3), SFLA(frogs, 3, leap=1.3), seeds=BOX.sample(np.random.default_rng(0), 99)
+    )
+    X = search.ask()
+    f = np.square(X).sum(axis=1)
+    search.tell(f)
+    leaps = search.ask()
+    assert leaps.shape == (3, 3)
+    for x, memeplex in zip(leaps, dealt(X, f, 3), strict=True):
+        assert between(x, memeplex[-1], memeplex[0], 1.3)
+
+
+def test_a_frog_that_did_not_improve_leaps_towards_the_best_of_all_and_then_anywhere():
+    wide = Box([-9.0] * 3, [9.0] * 3)
+    search = AskTell(wide, SFLA(12, 3), seeds=BOX.sample(np.random.default_rng(0), 12))
+    X = search.ask()
+    f = np.square(X).sum(axis=1)
+    search.tell(f)
+    first, second, third = (memeplex[-1] for memeplex in dealt(X, f, 3))
+    search.ask()
+    search.tell([np.inf, f.min() + 1e-9, np.inf])  # the second frog improves and is done
+    towards_best = search.ask()
+    assert len(towards_best) == 2
+    for x, frog in zip(towards_best, (first, third), strict=True):
+        assert between(x, frog, X[f.argmin()], 1.3)
+    search.tell([np.inf, f.max() - 1e-9])  # the third improves, the first does not
+    anywhere = search.ask()
+    assert len(anywhere) == 1
+    assert not between(anywhere[0], first, X[f.argmin()], 1.3)
+    search.tell([np.inf])  # the random frog stays whatever it costs
+    population = search._generator.gi_frame.f_locals["X"]
+    assert (population == anywhere).all(axis=1).any()
+    assert not (population == first).all(axis=1).any()
+    assert not (population == second).all(axis=1).any()
+
+
+def test_without_fallbacks_a_frog_waits_for_a_better_leap():
+    search = AskTell(BOX, SFLA(12, 3, leap=1.0, fallbacks=False))
+    X = search.ask()
+    f = np.square(X).sum(axis=1)
+    search.tell(f)
+    for _ in range(4):
+        leaps = search.ask()
+        assert len(leaps) == 3
+        for x, memeplex in zip(leaps, dealt(X, f, 3), strict=True):
+            assert between(x, memeplex[-1], memeplex[0], 1.0)
+        search.tell([np.inf] * 3)
+
+
+def test_no_leap_is_longer_than_the_largest():
+    search = AskTell(BOX, SFLA(12, 3, largest_leap=0.01, fallbacks=False))
+    X = search.ask()
+    f = np.square(X).sum(axis=1)
+    search.tell(f)
+    worst = np.array([memeplex[-1] for memeplex in dealt(X, f, 3)])
+    step = np.abs(search.ask() - worst)
+    assert (step <= 0.01 * BOX.width + 1e-15).all()
+    assert (step > 0.0099 * BOX.width).any()
+
+
+def test_memeplexes_are_shuffled_after_their_leaps():
+    search = AskTell(BOX, SFLA(12, 3, leaps=5, fallbacks=False))
+    for _ in range(1 + 5):
+        search.tell(np.square(search.ask()).sum(axis=1))
+    shuffled = search._generator.gi_frame.f_locals
+    assert (np.diff(shuffled["f"]) >= 0).all()  # sorted anew and dealt round
+    assert np.array_equal(shuffled["best"], [0, 1, 2])
+
+
+def test_fallbacks_are_paid_for():
+    counted = []
+
+    def objective(X):
+        counted.append(len(X))
+        return np.square(X).sum(axis=1)
+
+    assert minimize(objective, BOX, SFLA(12, 3), Budget(5000)).evaluations == sum(counted) == 5000
+    assert set(counted[1:-1]) == {1, 2, 3}
+
+
+def test_the_modified_leap_beats_the_published_one():
+    """Ibrahim's C_L = 1.3 against 1: leaps that stop short of the leader make the population shrink too soon."""
+    f = lambda X: np.square(X - 0.3).sum(axis=1)  # noqa: E731
+    box = Box([-5.0] * 6, [5.0] * 6)
+    modified, published = (
+        np.median([minimize(f, box, SFLA(leap=leap), Budget(4000), rng=seed).cost for seed in range(5)])
+        for leap in (1.3, 1.0)
+    )
+    assert modified < 0.1 * published
