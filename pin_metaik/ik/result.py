@@ -8,6 +8,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.dexterity import rank
 from pin_metaik.ik.problem import IKProblem
 
 AT_LIMIT = 1e-9  # rad or m
@@ -70,6 +71,11 @@ class IKResult:
         return tuple(name for name, binds in zip(limits.names, at_limit, strict=True) if binds)
 
     @property
+    def rank(self) -> int:
+        """Independent directions of the task that the chain can still move in at ``q``; fewer than asked: singular."""
+        return rank(self.problem.linearize(self.x)[1])
+
+    @property
     def why(self) -> str:
         """The reason for the status, in words."""
         match self.status:
@@ -79,7 +85,10 @@ class IKResult:
                 return f"out of reach: at least {self.problem.gap:.3g} m beyond what the links can span"
             case IKStatus.OUT_OF_TOLERANCE:
                 stuck = f"; at a limit: {', '.join(self.binding)}" if self.binding else ""
-                return f"nothing close enough found in {self.evaluations} evaluations; this is the nearest{stuck}"
+                lost = len(self.problem.rows) - self.rank
+                lost_text = f"; {lost} of {len(self.problem.rows)} directions lost there" if lost else ""
+                spent = f"nothing close enough found in {self.evaluations} evaluations"
+                return f"{spent}; this is the nearest{stuck}{lost_text}"
             case IKStatus.IN_COLLISION:
                 return "met only in collision"
             case IKStatus.STOPPED:
