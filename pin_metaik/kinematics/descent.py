@@ -23,6 +23,9 @@ PATIENCE = 4  # steps that must bring the squared error below `progress`, or the
 DAMPING_FLOOR = 1e-9  # what is left of the damping at a solution
 POLISH = 1  # further steps once the tolerance is met, while each gains a decade
 
+Arm: TypeAlias = tuple[Floats, Ints, Ints, Floats]  # joints, wiring, ends, tips
+Bounds: TypeAlias = tuple[Floats, Floats, Ints]  # lower, upper, winds
+Settings: TypeAlias = tuple[float, float, int]  # damping, progress, evaluations from one start
 Work: TypeAlias = tuple[Floats, ...]
 
 
@@ -36,27 +39,13 @@ def workspace(n: int, m: int, S: int) -> Work:
 
 
 @inline
-def evaluate(
-    joints: Floats,
-    wiring: Ints,
-    ends: Ints,
-    tips: Floats,
-    tasks: Floats,
-    rows: Ints,
-    x: Floats,
-    axes: Floats,
-    origins: Floats,
-    pose: Floats,
-    error: Floats,
-    r6: Floats,
-    J6: Floats,
-    r: Floats,
-    J: Floats,
-) -> tuple[float, bool]:
+def evaluate(arm: Arm, tasks: Floats, rows: Ints, x: Floats, work: Work) -> tuple[float, bool]:
     """Residual r (m,) and Jacobian by coordinate J (n, m) of several tips, or of one with free axes or slack.
 
     Returns |r|^2 and whether every tip is in tolerance.
     """
+    joints, wiring, ends, tips = arm
+    axes, origins, pose, error, r6, J6, _, _, r, J, _, _, _, _, _ = work
     m = 0
     square = 0.0
     solved = True
@@ -81,21 +70,11 @@ def evaluate(
 
 
 @inline
-def evaluate_pose(
-    joints: Floats,
-    wiring: Ints,
-    tip: Floats,
-    task: Floats,
-    x: Floats,
-    axes: Floats,
-    origins: Floats,
-    pose: Floats,
-    error: Floats,
-    r: Floats,
-    J: Floats,
-) -> tuple[float, bool]:
+def evaluate_pose(arm: Arm, task: Floats, x: Floats, work: Work) -> tuple[float, bool]:
     """The same for one tip's whole pose without slack: what almost everybody asks for, at half the time."""
-    forward(joints, wiring, 0, joints.shape[0], tip, task[:12], x, axes, origins, pose)
+    joints, wiring, _, tips = arm
+    axes, origins, pose, error, r, J, _, _, _, _, _, _, _, _, _ = work
+    forward(joints, wiring, 0, joints.shape[0], tips[0], task[:12], x, axes, origins, pose)
     pose_error(pose, error)
     position, orientation = residual(task, error, r)
     J[:, :] = 0.0
@@ -190,42 +169,37 @@ def step(
 
 @shared
 def descend_from(
-    joints: Floats,
-    wiring: Ints,
-    ends: Ints,
-    tips: Floats,
+    arm: Arm,
     tasks: Floats,
     rows: Ints,
-    lower: Floats,
-    upper: Floats,
+    bounds: Bounds,
     start: Floats,
-    damping: float,
-    progress: float,
-    steps: int,
+    settings: Settings,
+    evaluations: int,
     least: float,
     best: Floats,
     work: Work,
 ) -> tuple[int, bool, float]:
-    """Descend from one start (n,) for at most ``steps`` evaluations.
+    """Descend from one start (n,), for no more evaluations than are left.
 
     Returns the evaluations spent, whether the tolerances are met, and the least |r|^2 so far, here or before;
     ``best`` (n,) gets the coordinates that have it.
     """
-    axes, origins, pose, error, r6, J6, H6, y6, r, J, H, y, x, dx, held = work
-    whole = tips.shape[0] == 1 and rows.shape[0] == 6
+    _, _, _, _, r6, J6, H6, y6, r, J, H, y, x, dx, held = work
+    lower, upper, _ = bounds
+    damping, progress, steps = settings
+    whole = tasks.shape[0] == 1 and rows.shape[0] == 6
     for j in range(6):
         whole = whole and tasks[0, 12 + j] == 0.0
     x[:] = start
     mark = np.inf
     found = False
     polish = POLISH
-    for i in range(steps):
+    for i in range(min(steps, evaluations)):
         if whole:
-            square, solved = evaluate_pose(joints, wiring, tips[0], tasks[0], x, axes, origins, pose, error, r6, J6)
+            square, solved = evaluate_pose(arm, tasks[0], x, work)
         else:
-            square, solved = evaluate(
-                joints, wiring, ends, tips, tasks, rows, x, axes, origins, pose, error, r6, J6, r, J
-            )
+            square, solved = evaluate(arm, tasks, rows, x, work)
         if found and not (solved and square < 0.01 * least):
             return i + 1, True, least
         if square < least or solved:
@@ -244,4 +218,4 @@ def descend_from(
             step(x, lower, upper, r6, J6, 6, damping * square + DAMPING_FLOOR, H6, y6, dx, held)
         else:
             step(x, lower, upper, r, J, rows.shape[0], damping * square + DAMPING_FLOOR, H, y, dx, held)
-    return steps, found, least
+    return min(steps, evaluations), found, least

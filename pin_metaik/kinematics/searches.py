@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from typing import TypeAlias
+
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit, shared
-from pin_metaik.kinematics.descent import Work, descend_from, evaluate, workspace
+from pin_metaik.kinematics.descent import Arm, Bounds, Settings, Work, descend_from, evaluate, workspace
 from pin_metaik.kinematics.kernels import PATHS, costs, forward, poses
 
 __all__ = ["costs", "descend", "descend_all", "descend_batch", "linearize", "neighbours", "poses"]
 
 ATLAS = "f8[:,:,::1], f8[:,::1], f8"  # leaves, entries, scale
+
+Atlas: TypeAlias = tuple[Floats, Floats, float]  # leaves, entries, scale
 
 TURN = 2.0 * np.pi
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
@@ -31,10 +35,10 @@ def linearize(
     J: Floats,
 ) -> tuple[float, bool]:
     """Weighted residual r (m,) and Jacobian by coordinate J (n, m) at x; also |r|^2 and whether all is in tolerance."""
-    n, S = x.shape[0], joints.shape[0]
-    axes, origins, pose, error = np.empty((S, 3)), np.empty((S, 3)), np.empty(12), np.empty(6)
-    r6, J6 = np.empty(6), np.empty((n, 6))
-    return evaluate(joints, wiring, ends, tips, tasks, rows, x, axes, origins, pose, error, r6, J6, r, J)
+    work = workspace(x.shape[0], rows.shape[0], joints.shape[0])
+    square, met = evaluate((joints, wiring, ends, tips), tasks, rows, x, work)
+    r[:], J[:, :] = work[8], work[9]
+    return square, met
 
 
 @inline
@@ -86,8 +90,9 @@ def look_up(leaves: Floats, goal: Floats, weights: Floats, found: Ints, distance
 
 
 @inline
-def unwind(x: Floats, x0: Floats, lower: Floats, upper: Floats, winds: Ints) -> None:
+def unwind(x: Floats, x0: Floats, bounds: Bounds) -> None:
     """Move each winding angle by the whole turns that bring it nearest to x0 inside its limits."""
+    lower, upper, winds = bounds
     for c in range(x.shape[0]):
         if winds[c] == 1:
             turns = np.round((x0[c] - x[c]) / TURN)
@@ -97,22 +102,13 @@ def unwind(x: Floats, x0: Floats, lower: Floats, upper: Floats, winds: Ints) -> 
 
 @shared
 def search(
-    joints: Floats,
-    wiring: Ints,
-    ends: Ints,
-    tips: Floats,
+    arm: Arm,
     tasks: Floats,
     rows: Ints,
-    lower: Floats,
-    upper: Floats,
-    winds: Ints,
-    leaves: Floats,
-    entries: Floats,
-    scale: float,
+    bounds: Bounds,
+    atlas: Atlas,
     starts: Floats,
-    damping: float,
-    progress: float,
-    per_start: int,
+    settings: Settings,
     evaluations: int,
     best: Floats,
     work: Work,
@@ -124,7 +120,8 @@ def search(
 
     Returns the evaluations spent and the number of the start that met them, or -1; ``best`` (n,) gets the coordinates.
     """
-    T = tips.shape[0]
+    leaves, entries, scale = atlas
+    T = tasks.shape[0]
     tried = TRIED if leaves.shape[0] > 0 else 0
     own = 0
     order, distances = np.empty(TRIED, np.int64), np.empty(TRIED)
@@ -132,6 +129,7 @@ def search(
         goal, weights = np.empty(9 * T), np.empty(9 * T)
         target_feature(tasks, scale, goal, weights)
         look_up(leaves, goal, weights, order, distances)
+        joints, wiring, ends, tips = arm
         axes, origins, pose = work[0], work[1], work[2]
         away = 0.0
         for t in range(T):
@@ -154,25 +152,11 @@ def search(
         else:
             start = starts[k - tried]
         steps, met, least = descend_from(
-            joints,
-            wiring,
-            ends,
-            tips,
-            tasks,
-            rows,
-            lower,
-            upper,
-            start,
-            damping,
-            progress,
-            min(per_start, evaluations - spent),
-            least,
-            best,
-            work,
+            arm, tasks, rows, bounds, start, settings, evaluations - spent, least, best, work
         )
         spent += steps
         if met:
-            unwind(best, starts[0], lower, upper, winds)
+            unwind(best, starts[0], bounds)
             return spent, k
     return spent, -1
 
@@ -219,22 +203,13 @@ def descend(
     """``search`` for one problem."""
     work = workspace(lower.shape[0], rows.shape[0], joints.shape[0])
     return search(
-        joints,
-        wiring,
-        ends,
-        tips,
+        (joints, wiring, ends, tips),
         tasks,
         rows,
-        lower,
-        upper,
-        winds,
-        leaves,
-        entries,
-        scale,
+        (lower, upper, winds),
+        (leaves, entries, scale),
         starts,
-        damping,
-        progress,
-        per_start,
+        (damping, progress, per_start),
         evaluations,
         best,
         work,
@@ -277,22 +252,13 @@ def descend_batch(
     for i in range(tasks.shape[0]):
         own[0] = guesses[i]
         spent[i], solved_by[i] = search(
-            joints,
-            wiring,
-            ends,
-            tips,
+            (joints, wiring, ends, tips),
             tasks[i],
             rows,
-            lower,
-            upper,
-            winds,
-            leaves,
-            entries,
-            scale,
+            (lower, upper, winds),
+            (leaves, entries, scale),
             own,
-            damping,
-            progress,
-            per_start,
+            (damping, progress, per_start),
             evaluations,
             best[i],
             work,
@@ -361,18 +327,13 @@ def descend_all(
         else:
             break
         steps, met, _ = descend_from(
-            joints,
-            wiring,
-            ends,
-            tips,
+            (joints, wiring, ends, tips),
             tasks,
             rows,
-            lower,
-            upper,
+            (lower, upper, winds),
             start,
-            damping,
-            progress,
-            min(per_start, evaluations - spent),
+            (damping, progress, per_start),
+            evaluations - spent,
             np.inf,
             x,
             work,
