@@ -7,7 +7,7 @@ import sys
 import typer
 from rich.console import Console
 
-from pin_metaik.cli import demo, robots, solve
+from pin_metaik.cli import demo, plan, reproduce, robots, solve, stewart
 from pin_metaik.errors import MetaIKError
 
 SOLVED, NOT_SOLVED, NONSENSE = 0, 1, 2
@@ -24,6 +24,9 @@ app.command("solve")(solve.solve)
 app.command("robots")(robots.robots)
 app.command("urdf")(robots.urdf)
 app.command("demo")(demo.demo)
+app.command("reproduce")(reproduce.reproduce)
+app.command("plan")(plan.plan)
+app.add_typer(stewart.app, name="stewart")
 
 
 def run() -> None:

@@ -54,15 +54,14 @@ class Target:
 
     def __post_init__(self) -> None:
         """Check everything once, where it enters."""
-        pose = as_pose(self.pose)
-        object.__setattr__(self, "pose", pose)
+        placement, (a, b, c, x, d, e, f, y, g, h, i, z) = as_pose(self.pose)
+        object.__setattr__(self, "pose", placement)
         slack, near = _slack("position_tolerance", self.position_tolerance)
         lean, aligned = _slack("orientation_tolerance", self.orientation_tolerance)
         if FREE == max(slack) == min(slack) == min(lean):
             raise InvalidTarget("this target frees every axis: nothing is left to reach")
         weight = _weight("position_weight", self.position_weight)
         turn = _weight("orientation_weight", self.orientation_weight)
-        (a, b, c, x), (d, e, f, y), (g, h, i, z), _ = pose.homogeneous.tolist()
         # The world in the target frame, slack and weight of each axis, radii.
         world = (a, d, g, b, e, h, c, f, i, -a * x - d * y - g * z, -b * x - e * y - h * z, -c * x - f * y - i * z)
         weights = (weight, weight, weight, turn, turn, turn)

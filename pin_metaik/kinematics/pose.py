@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -14,8 +15,15 @@ ORTHONORMAL = 1e-6
 """How far R'R may be from the identity, and det R from 1, before a matrix is not taken for a rotation."""
 
 
-def as_pose(pose: pin.SE3 | ArrayLike) -> pin.SE3:
-    """A pose as a ``pin.SE3`` of its own.
+class Pose(NamedTuple):
+    """A checked pose: as a ``pin.SE3`` of its own, and as the numbers R00 R01 R02 x, R10 R11 R12 y, R20 R21 R22 z."""
+
+    placement: pin.SE3
+    numbers: tuple[float, ...]
+
+
+def as_pose(pose: pin.SE3 | ArrayLike) -> Pose:
+    """A pose that somebody gave, checked.
 
     Args:
         pose: A ``pin.SE3`` or a 4x4 homogeneous matrix.
@@ -23,10 +31,23 @@ def as_pose(pose: pin.SE3 | ArrayLike) -> pin.SE3:
     Raises:
         InvalidTarget: If it is not finite, not 4x4, or its rotation is not orthonormal and right-handed.
     """
-    if isinstance(pose, pin.SE3):
-        own = pin.SE3(pose)
-        _refuse_non_pose(own)
-        return own
+    placement = pin.SE3(pose) if isinstance(pose, pin.SE3) else _from_matrix(pose)
+    # Plain floats: on a dozen numbers this is five times quicker than numpy's reductions.
+    (a, b, c, x), (d, e, f, y), (g, h, i, z), _ = placement.homogeneous.tolist()
+    if not math.isfinite(a + b + c + d + e + f + g + h + i + x + y + z):
+        raise InvalidTarget(f"a pose has finite entries, got\n{placement.homogeneous}")
+    # Two rows of unit length and the third their cross product: orthonormal and right-handed.
+    u, v, w = b * f - c * e - g, c * d - a * f - h, a * e - b * d - i
+    if (
+        abs(a * a + b * b + c * c - 1.0) > ORTHONORMAL
+        or abs(d * d + e * e + f * f - 1.0) > ORTHONORMAL
+        or u * u + v * v + w * w > ORTHONORMAL * ORTHONORMAL
+    ):
+        raise InvalidTarget(_complaint(placement.rotation))
+    return Pose(placement, (a, b, c, x, d, e, f, y, g, h, i, z))
+
+
+def _from_matrix(pose: ArrayLike) -> pin.SE3:
     try:
         matrix = np.array(pose, dtype=np.float64)
     except (TypeError, ValueError):
@@ -35,24 +56,7 @@ def as_pose(pose: pin.SE3 | ArrayLike) -> pin.SE3:
         raise InvalidTarget(f"a pose is a pin.SE3 or a 4x4 matrix, got shape {matrix.shape}")
     if matrix[3].tolist() != [0.0, 0.0, 0.0, 1.0]:
         raise InvalidTarget(f"the last row of a pose is 0 0 0 1, got {matrix[3]}")
-    own = pin.SE3(matrix[:3, :3], matrix[:3, 3])
-    _refuse_non_pose(own)
-    return own
-
-
-def _refuse_non_pose(pose: pin.SE3) -> None:
-    # Plain floats: on a dozen numbers this is five times quicker than numpy's reductions.
-    (a, b, c, x), (d, e, f, y), (g, h, i, z), _ = pose.homogeneous.tolist()
-    if not math.isfinite(a + b + c + d + e + f + g + h + i + x + y + z):
-        raise InvalidTarget(f"a pose has finite entries, got\n{pose.homogeneous}")
-    # Two rows of unit length and the third their cross product: orthonormal and right-handed.
-    u, v, w = b * f - c * e - g, c * d - a * f - h, a * e - b * d - i
-    if (
-        abs(a * a + b * b + c * c - 1.0) > ORTHONORMAL
-        or abs(d * d + e * e + f * f - 1.0) > ORTHONORMAL
-        or u * u + v * v + w * w > ORTHONORMAL * ORTHONORMAL
-    ):
-        raise InvalidTarget(_complaint(pose.rotation))
+    return pin.SE3(matrix[:3, :3], matrix[:3, 3])
 
 
 def _complaint(rotation: NDArray[np.float64]) -> str:

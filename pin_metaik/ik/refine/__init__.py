@@ -2,15 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.ik.refine.dls import DLS
+from pin_metaik.ik.refine.iterate import Patience
+from pin_metaik.ik.refine.lm import LM
+from pin_metaik.ik.refine.newton import Newton
 from pin_metaik.ik.refine.protocol import Refinement, Refiner
+from pin_metaik.ik.refine.qp import QP
+from pin_metaik.ik.refine.sdls import SDLS
+from pin_metaik.ik.refine.transpose import Transpose
 
-REFINERS: dict[str, type[Refiner]] = {
+REFINERS: dict[str, Callable[[], Refiner]] = {
     "dls": DLS,
+    "dls_constant": partial(LM, "wampler"),  # damped least squares and Levenberg-Marquardt are one with this damping
+    "lm_chan": partial(LM, "chan"),
+    "lm_sugihara": partial(LM, "sugihara"),
+    "lm_wampler": partial(LM, "wampler"),
+    "newton": Newton,
+    "qp": QP,
+    "sdls": SDLS,
+    "transpose": Transpose,
 }
 
-__all__ = ["DLS", "REFINERS", "Refinement", "Refiner", "make_refiner"]
+__all__ = [
+    "DLS",
+    "LM",
+    "QP",
+    "REFINERS",
+    "SDLS",
+    "Newton",
+    "Patience",
+    "Refinement",
+    "Refiner",
+    "Transpose",
+    "make_refiner",
+]
 
 
 def make_refiner(refiner: str | Refiner) -> Refiner:

@@ -1,0 +1,57 @@
+"""``pin-metaik reproduce``: a paper's experiment again, next to what it printed."""
+
+from __future__ import annotations
+
+import sys
+from datetime import date
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from pin_metaik.compare import papers
+from pin_metaik.compare.papers import PAPERS, Options, Reproduction
+from pin_metaik.compare.show import show
+from pin_metaik.compare.write import need_figures, write
+from pin_metaik.errors import UnknownName
+
+QUICK_RUNS = 3
+INTERRUPTED = 130  # what shells make of Ctrl-C
+WIDE = 150  # columns for files and pipes, which have no width
+
+
+def reproduce(
+    name: Annotated[str, typer.Argument(help=f"One of {', '.join(PAPERS)}.")],
+    runs: Annotated[int | None, typer.Option(min=1, help="Runs of each method; default: as the paper.")] = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help=f"Leave out what takes long; {QUICK_RUNS} runs if not told.")
+    ] = False,
+    long: Annotated[bool, typer.Option("--long", help="Run what takes hours, too.")] = False,
+    out: Annotated[Path | None, typer.Option(help="Folder for Markdown, CSV files and figures.")] = None,
+    figures: Annotated[bool, typer.Option(help="Draw figures into --out; needs the extra plots.")] = True,
+    rng: Annotated[int, typer.Option(min=0, help="Seed of everything random.")] = 0,
+) -> None:
+    """Run a paper's experiment again: its numbers and ours side by side. Ctrl-C keeps what is done."""
+    if name not in PAPERS:
+        raise UnknownName("paper", name, PAPERS)
+    if out is not None and figures:
+        need_figures()
+    paper = PAPERS[name]
+    options = Options(runs or (min(QUICK_RUNS, paper.runs) if quick else paper.runs), quick, long, rng)
+    console = Console(width=None if sys.stdout.isatty() else WIDE)
+    console.print(f"{paper.title}\n{paper.source}", markup=False, highlight=False)
+    again = papers.reproduce(paper, options, Console(stderr=True))
+    show(again.sections, console)
+    console.print(f"\n{again}", style="yellow" if again.partial else None, markup=False, highlight=False)
+    if out is not None:
+        for path in write(out, name, _preamble(again), again.sections, figures):
+            console.print(str(path), markup=False, highlight=False, soft_wrap=True)
+    raise typer.Exit(INTERRUPTED if again.partial else 0)
+
+
+def _preamble(again: Reproduction) -> list[str]:
+    options = again.options
+    flags = "".join(f" --{flag}" for flag in ("quick", "long") if getattr(options, flag))
+    call = f"pin-metaik reproduce {again.paper.name} --runs {options.runs} --rng {options.rng}{flags}"
+    return [f"# {again.paper.title}", again.paper.source, f"`{call}`, {date.today()}. {again}"]

@@ -1,0 +1,173 @@
+"""``pin-metaik stewart``: analyse, design and show general Stewart platforms."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from math import radians
+from pathlib import Path
+from typing import Annotated, Literal, get_args
+
+import numpy as np
+import typer
+from rich.console import Console
+
+from pin_metaik import stewart
+from pin_metaik.optimize import ALGORITHMS, make
+from pin_metaik.stewart import Mechanism, Verdict
+from pin_metaik.stewart.conditioning import NORMS
+from pin_metaik.stewart.report import Lines, assess, at_pose, describe, outcome, values
+from pin_metaik.stewart.task import Index
+
+app = typer.Typer(
+    help="General Stewart platforms, 3x3 to 6x6: analysis and dimensional optimisation.", no_args_is_help=True
+)
+
+File = Annotated[str, typer.Argument(help="A .toml file, or one of: " + ", ".join(stewart.mechanism_names()) + ".")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, in m and rad.")]
+Picture = Annotated[Path | None, typer.Option(help="Also draw it and its workspace: .png, .svg or .pdf.")]
+INDICES = ", ".join(get_args(Index))
+
+
+@app.command()
+def analyse(
+    file: File,
+    pose: Annotated[
+        tuple[float, float, float, float, float, float] | None,
+        typer.Option(metavar="X Y Z R P Y", help="Also one pose: its unit of length, and degrees Rz(Y) Ry(P) Rx(R)."),
+    ] = None,
+    cells: Annotated[int | None, typer.Option(min=1, help="Cells along each axis, instead of the file's.")] = None,
+    norm: Annotated[str | None, typer.Option(help=f"Instead of the file's: {', '.join(NORMS)}.")] = None,
+    length: Annotated[str | None, typer.Option(help="Characteristic length: rm, best, or in its unit.")] = None,
+    picture: Picture = None,
+    as_json: Json = False,
+) -> None:
+    """Workspace, dexterity and singularities. Exit code 0: regular, 1: singular poses in it, 2: makes no sense."""
+    mechanism = _measured(stewart.load_mechanism(file), norm, length)
+    if cells is not None:
+        mechanism = replace(mechanism, grid=replace(mechanism.grid, counts=(cells, cells, cells)))
+    T = None if pose is None else _pose(mechanism, pose)
+    with stewart.progress_bar("surveying") as watch:
+        workspace = mechanism.survey(watch=watch)
+    if as_json:
+        print(json.dumps(values(mechanism, workspace), allow_nan=False))
+    else:
+        _show(mechanism.name, describe(mechanism))
+        if T is not None:
+            _show("at the pose", at_pose(mechanism, T))
+        _show("workspace", assess(mechanism, workspace))
+    if picture is not None:
+        stewart.save_picture(stewart.draw(mechanism, workspace), picture)
+    raise typer.Exit(0 if workspace.verdict is Verdict.REGULAR else 1)
+
+
+@app.command()
+def design(
+    file: File,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the mechanism found: .toml.")] = None,
+    algorithm: Annotated[str | None, typer.Option(help=f"Instead of the file's: {', '.join(ALGORITHMS)}.")] = None,
+    evaluations: Annotated[int | None, typer.Option(min=1, help="Designs to look at.")] = None,
+    rng: Annotated[int | None, typer.Option(min=0, help="Seed of every random choice.")] = None,
+    index: Annotated[str | None, typer.Option(help=f"What dexterity is: {INDICES}.")] = None,
+    threshold: Annotated[float | None, typer.Option(help="Of nu, for lci.")] = None,
+    weights: Annotated[
+        tuple[float, float] | None, typer.Option(metavar="D W", help="Of dexterity and workspace.")
+    ] = None,
+    from_current: Annotated[bool | None, typer.Option(help="Start from the mechanism as it is, too.")] = None,
+    history: Annotated[Path | None, typer.Option(help="Write designs looked at and best fitness: .csv.")] = None,
+    picture: Picture = None,
+    as_json: Json = False,
+) -> None:
+    """Optimise its dimensions; options replace settings of the file. Ctrl-C keeps the best so far.
+
+    Exit code 0: a design was found, 1: none that can be built, 2: makes no sense.
+    """
+    mechanism = stewart.load_mechanism(file)
+    given = {
+        "algorithm": None if algorithm is None else make(algorithm),
+        "evaluations": evaluations,
+        "seed": rng,
+        "index": index,
+        "threshold": threshold,
+        "weights": weights,
+        "from_current": from_current,
+    }
+    if mechanism.task is not None:
+        task = replace(mechanism.task, **{key: value for key, value in given.items() if value is not None})  # type: ignore[arg-type]
+        mechanism = replace(mechanism, task=task)
+    with stewart.progress_bar("designing") as watch:
+        found = stewart.design(mechanism, watch=watch)
+    workspace = found.mechanism.survey() if found.success else None
+    if as_json:
+        score = None if found.score is None else vars(found.score)
+        report = {"success": found.success, "ended": found.search.status.value, "score": score}
+        report["workspace"] = None if workspace is None else values(found.mechanism, workspace)
+        report["mechanism"] = stewart.to_toml(found.mechanism) if found.success else None
+        print(json.dumps(report, allow_nan=False))
+    else:
+        _show("design", outcome(found))
+        if workspace is not None:
+            _show(found.mechanism.name, describe(found.mechanism))
+            _show("workspace", assess(found.mechanism, workspace))
+    if history is not None:
+        np.savetxt(history, found.history, "%.17g", ",", header="designs,fitness", comments="")
+    if output is not None and found.success:
+        stewart.save_mechanism(found.mechanism, output)
+    if picture is not None and workspace is not None:
+        stewart.save_picture(stewart.draw(found.mechanism, workspace), picture)
+    raise typer.Exit(0 if found.success else 1)
+
+
+@app.command()
+def show(
+    file: File,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Draw it: .png, .svg or .pdf.")] = None,
+    workspace: Annotated[bool, typer.Option(help="Draw its workspace beside it.")] = True,
+    urdf: Annotated[Path | None, typer.Option(help="Write its URDF, loops open.")] = None,
+    toml: Annotated[bool, typer.Option("--toml", help="Print it as TOML instead, with every setting.")] = False,
+) -> None:
+    """Its dimensions and limits; draw it, or write it for other tools."""
+    mechanism = stewart.load_mechanism(file)
+    if toml:
+        print(stewart.to_toml(mechanism), end="")
+    else:
+        _show(mechanism.name, [*describe(mechanism), *_words(mechanism)])
+    if urdf is not None:
+        stewart.save_urdf(mechanism, urdf)
+    if output is not None:
+        with stewart.progress_bar("surveying") as watch:
+            found = mechanism.survey(watch=watch) if workspace else None
+        stewart.save_picture(stewart.draw(mechanism, found), output)
+
+
+def _measured(mechanism: Mechanism, norm: str | None, length: str | None) -> Mechanism:
+    """With another norm or characteristic length."""
+    dexterity = mechanism.dexterity
+    if norm is not None:
+        dexterity = replace(dexterity, norm=norm)  # type: ignore[arg-type]
+    if length is not None:
+        dexterity = replace(dexterity, length=_length(mechanism, length))
+    return replace(mechanism, dexterity=dexterity)
+
+
+def _length(mechanism: Mechanism, text: str) -> float | Literal["rm", "best"]:
+    try:
+        return float(text) * mechanism.metres
+    except ValueError:
+        return text  # type: ignore[return-value]  # the settings say whether it is one of theirs
+
+
+def _pose(mechanism: Mechanism, pose: tuple[float, ...]) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    x, y, z, *rpy = pose
+    return stewart.pose_at([value * mechanism.metres for value in (x, y, z)], [radians(angle) for angle in rpy])
+
+
+def _words(mechanism: Mechanism) -> Lines:
+    return [(key, text) for key in ("description", "source") if (text := getattr(mechanism, key))]
+
+
+def _show(title: str, lines: Lines) -> None:
+    console = Console(highlight=False)
+    console.print(title, style="bold", markup=False)
+    for label, value in lines:
+        console.print(f"  {label:20} {value}", markup=False, soft_wrap=True)

@@ -1,0 +1,71 @@
+"""Running a paper's jobs under a progress bar; Ctrl-C keeps those that are done."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from pin_metaik.compare.papers.paper import AnyPaper, Options
+from pin_metaik.compare.report import Section
+
+
+@dataclass(frozen=True)
+class Reproduction:
+    """A paper's experiment, run here.
+
+    Attributes:
+        paper: The paper.
+        options: How much of it was run.
+        sections: The report.
+        done: Jobs done.
+        planned: Jobs there were.
+        seconds: Time taken, in s.
+    """
+
+    paper: AnyPaper
+    options: Options
+    sections: list[Section]
+    done: int
+    planned: int
+    seconds: float
+
+    @property
+    def partial(self) -> bool:
+        """Whether it was interrupted."""
+        return self.done < self.planned
+
+    def __str__(self) -> str:
+        if self.partial:
+            return f"PARTIAL: interrupted after {self.done} of {self.planned} jobs, {self.seconds:.0f} s."
+        return f"All {self.planned} jobs done in {self.seconds:.0f} s."
+
+
+def reproduce(paper: AnyPaper, options: Options, console: Console | None = None) -> Reproduction:
+    """Run a paper's jobs one after the other and report on them.
+
+    Args:
+        paper: The paper.
+        options: How much of it to run.
+        console: Where to show a progress bar; nowhere if None.
+    """
+    began = perf_counter()
+    jobs = list(paper.jobs(options))
+    done: list[Any] = []
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TextColumn("left"))
+    bar = Progress(
+        *columns, TimeRemainingColumn(), console=console or Console(quiet=True), transient=True, disable=console is None
+    )
+    try:
+        with bar:
+            task = bar.add_task(paper.name, total=sum(job.size for job in jobs))
+            for job in jobs:
+                bar.update(task, description=f"{paper.name}: {job.label}")
+                done.append(job.work())
+                bar.advance(task, job.size)
+    except KeyboardInterrupt:
+        pass  # the report says how far it got
+    return Reproduction(paper, options, paper.sections(done, options), len(done), len(jobs), perf_counter() - began)

@@ -1,0 +1,81 @@
+"""What an experiment has to tell: sections of sentences, tables and figures, before anybody prints or writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+Value: TypeAlias = str | int | float | None
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table.
+
+    Attributes:
+        heading: What it holds, with its unit.
+        form: Format of its numbers, e.g. ``".3g"``; the CSV file has them in full.
+    """
+
+    heading: str
+    form: str = ""
+
+    def text(self, value: Value) -> str:
+        """A value as it is shown; ``None`` is a dash."""
+        if value is None:
+            return "-"
+        return value if isinstance(value, str) else format(value, self.form)
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table; a file of its own when written.
+
+    Attributes:
+        name: Stem of its CSV file, unique in the report.
+        title: One line.
+        columns: Its columns.
+        rows: One value for each column.
+        shown: Whether it is printed; raw data, e.g. every single run, is only written to its CSV file.
+    """
+
+    name: str
+    title: str
+    columns: tuple[Column, ...]
+    rows: list[tuple[Value, ...]]
+    shown: bool = True
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure, drawn only when it is written.
+
+    Attributes:
+        name: Stem of its PNG file, unique in the report.
+        caption: What it shows, one sentence.
+        draw: Draws into an empty ``matplotlib.figure.Figure``; needs the extra ``plots``.
+        size: Width and height in inches.
+    """
+
+    name: str
+    caption: str
+    draw: Callable[[Any], None]
+    size: tuple[float, float] = (9.0, 4.0)
+
+
+@dataclass(frozen=True)
+class Section:
+    """A section of a report: sentences, then tables, then figures.
+
+    Attributes:
+        title: Its heading.
+        text: Paragraphs, plain text.
+        tables: Its tables.
+        figures: Its figures.
+    """
+
+    title: str
+    text: tuple[str, ...] = ()
+    tables: tuple[Table, ...] = ()
+    figures: tuple[Figure, ...] = ()

@@ -1,0 +1,123 @@
+"""A small dense network with one output, its Jacobian and its gradient, written out."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.learn.arrays import Array
+
+
+@dataclass(frozen=True)
+class Network:
+    """Layers of tanh neurons and one linear output; ``Network(2, (5, 5))`` is 2:5:5:1.
+
+    All its weights are one vector w: for each layer its matrix (outputs, inputs) row by row, then its biases.
+
+    Attributes:
+        inputs: Number of inputs.
+        hidden: Neurons of each hidden layer.
+
+    Raises:
+        InvalidSetting: A layer without neurons.
+    """
+
+    inputs: int
+    hidden: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        if self.inputs < 1 or any(neurons < 1 for neurons in self.hidden):
+            raise InvalidSetting(f"every layer needs a neuron, got {self}")
+
+    @property
+    def sizes(self) -> tuple[int, ...]:
+        """Neurons of every layer, inputs and output included."""
+        return (self.inputs, *self.hidden, 1)
+
+    @cached_property
+    def count(self) -> int:
+        """Number of weights, biases included."""
+        return sum(out * (into + 1) for into, out in zip(self.sizes[:-1], self.sizes[1:], strict=True))
+
+    def initial(self, rng: int | np.random.Generator | None) -> Array:
+        """Random weights (count,) after Nguyen and Widrow 1990, for inputs in [-1, 1].
+
+        The neurons of a hidden layer divide the range of its inputs among them; the output starts near zero.
+        """
+        generator = np.random.default_rng(rng)
+        parts: list[Array] = []
+        for into, out in zip(self.sizes[:-2], self.sizes[1:-1], strict=True):
+            beta = 0.7 * out ** (1 / into)
+            W = generator.uniform(-1, 1, (out, into))
+            W *= beta / np.linalg.norm(W, axis=1, keepdims=True)
+            spread = np.linspace(-beta, beta, out) if out > 1 else np.zeros(1)
+            parts += [W.ravel(), spread * np.sign(W[:, 0])]
+        parts.append(generator.uniform(-0.5, 0.5, self.sizes[-2] + 1) / math.sqrt(self.sizes[-2]))
+        return np.concatenate(parts)
+
+    def outputs(self, w: Array, X: Array) -> Array:
+        """Outputs (n,) for inputs X (n, inputs)."""
+        return self._forward(w, X)[-1][:, 0]
+
+    def jacobian(self, w: Array, X: Array) -> Array:
+        """Derivatives (n, count) of the outputs by the weights."""
+        activations = self._forward(w, X)
+        J = np.empty((len(X), self.count))
+        delta = np.ones((len(X), 1))  # of the output by what a layer's neurons sum up
+        at = self.count
+        layers = self._layers(w)
+        for layer in reversed(range(len(layers))):
+            W, _ = layers[layer]
+            a = activations[layer]
+            at -= len(W)
+            J[:, at : at + len(W)] = delta
+            at -= W.size
+            np.multiply(delta[:, :, None], a[:, None, :], out=J[:, at : at + W.size].reshape(len(X), *W.shape))
+            if layer:
+                delta = (delta @ W) * (1 - a**2)
+        return J
+
+    def gradient(self, w: Array, X: Array, y: Array) -> tuple[float, Array]:
+        """Mean squared error of the outputs against y (n,), and its gradient (count,)."""
+        activations = self._forward(w, X)
+        error = activations[-1] - y[:, None]
+        gradient = np.empty(self.count)
+        delta = 2 / len(X) * error
+        at = self.count
+        layers = self._layers(w)
+        for layer in reversed(range(len(layers))):
+            W, _ = layers[layer]
+            a = activations[layer]
+            at -= len(W)
+            gradient[at : at + len(W)] = delta.sum(axis=0)
+            at -= W.size
+            gradient[at : at + W.size] = (delta.T @ a).ravel()
+            if layer:
+                delta = (delta @ W) * (1 - a**2)
+        return float(np.mean(np.square(error))), gradient
+
+    def _layers(self, w: Array) -> list[tuple[Array, Array]]:
+        """Matrix and biases of every layer, as views of w."""
+        layers, at = [], 0
+        for into, out in zip(self.sizes[:-1], self.sizes[1:], strict=True):
+            W = w[at : at + into * out].reshape(out, into)
+            layers.append((W, w[at + into * out : at + (into + 1) * out]))
+            at += (into + 1) * out
+        return layers
+
+    def _forward(self, w: Array, X: Array) -> list[Array]:
+        """What every layer hands on (n, neurons), the inputs first and the output last."""
+        layers = self._layers(w)
+        activations = [X]
+        for W, b in layers[:-1]:
+            activations.append(np.tanh(activations[-1] @ W.T + b))
+        W, b = layers[-1]
+        activations.append(activations[-1] @ W.T + b)
+        return activations
+
+    def __str__(self) -> str:
+        return ":".join(map(str, self.sizes))

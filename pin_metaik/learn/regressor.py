@@ -1,0 +1,137 @@
+"""A network fitted to data: scaling, training, and a warning when it is asked about what it never saw."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.learn.arrays import Array, as_table
+from pin_metaik.learn.network import Network
+from pin_metaik.learn.trainers import Callback, Trainer, Training, train
+
+EDGE = 1e-9  # of the range; as far outside is still inside
+
+
+class OutsideTraining(UserWarning):
+    """A network was asked outside the range of its training data, where nothing is known of its error."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scale:
+    """Columns mapped from their range to [-1, 1].
+
+    Attributes:
+        lower: (d,).
+        upper: (d,).
+    """
+
+    lower: Array
+    upper: Array
+
+    @staticmethod
+    def of(table: Array) -> Scale:
+        """The scale of a table's own range."""
+        return Scale(table.min(axis=0), table.max(axis=0))
+
+    @property
+    def half(self) -> Array:
+        """Half of the range (d,); 1 where there is none."""
+        width = np.asarray(self.upper - self.lower)
+        return np.where(width > 0, width / 2, 1.0)
+
+    def down(self, table: Array) -> Array:
+        """To [-1, 1]."""
+        scaled: Array = (table - (self.lower + self.upper) / 2) / self.half
+        return scaled
+
+    def up(self, table: Array) -> Array:
+        """From [-1, 1]."""
+        unscaled: Array = table * self.half + (self.lower + self.upper) / 2
+        return unscaled
+
+
+@dataclass(frozen=True, eq=False)
+class Regressor:
+    """A trained network from inputs to one number.
+
+    Attributes:
+        network: Its layers.
+        w: Its weights.
+        inputs: Scale of the inputs: the training range.
+        output: Scale of the output.
+        training: How it was trained.
+    """
+
+    network: Network
+    w: Array
+    inputs: Scale
+    output: Scale
+    training: Training
+
+    def __call__(self, X: ArrayLike) -> Array:
+        """Outputs (n,) for inputs X (n, d).
+
+        Warns:
+            OutsideTraining: Inputs lie outside the training range.
+
+        Raises:
+            InvalidSetting: Inputs that are no table of finite numbers with d columns.
+        """
+        table = as_table("the inputs", X)
+        if table.shape[1] != self.network.inputs:
+            raise InvalidSetting(f"the network {self.network} takes {self.network.inputs} inputs, got {table.shape[1]}")
+        outside = ~self.knows(table)
+        if outside.any():
+            warnings.warn(
+                f"{outside.sum()} of {len(table)} inputs lie outside the training range "
+                f"{self.inputs.lower} to {self.inputs.upper}, e.g. {table[outside][0]}: the error there is unknown",
+                OutsideTraining,
+                stacklevel=2,
+            )
+        return self.predict(table)
+
+    def predict(self, X: Array) -> Array:
+        """Outputs (n,) for inputs X (n, d), without a word about their range."""
+        return self.output.up(self.network.outputs(self.w, self.inputs.down(X))[:, None])[:, 0]
+
+    def knows(self, X: Array) -> NDArray[np.bool_]:
+        """Whether each of the inputs X (n, d) lies in the training range (n,)."""
+        return np.asarray((np.abs(self.inputs.down(X)) <= 1 + EDGE).all(axis=1))
+
+
+def fit(
+    X: ArrayLike,
+    y: ArrayLike,
+    hidden: Sequence[int] = (5,),
+    trainer: str | Trainer = "lm",
+    iterations: int = 1000,
+    rng: int | np.random.Generator | None = 0,
+    callback: Callback | None = None,
+) -> Regressor:
+    """Fit a network to data; inputs and output are scaled to [-1, 1] and the mean squared error is minimised.
+
+    Args:
+        X: Inputs (n, d).
+        y: Outputs (n,).
+        hidden: Neurons of each hidden layer.
+        trainer: By name or as an object.
+        iterations: At most; what one is depends on the trainer.
+        rng: Seed or generator of the first weights.
+        callback: Called after every iteration with its number and the error; Ctrl-C keeps the best so far.
+
+    Raises:
+        InvalidSetting: Data that do not fit together.
+        UnknownName: No trainer of that name.
+    """
+    X = as_table("the inputs", X)
+    Y = as_table("the outputs", np.asarray(y)[:, None])
+    if len(X) != len(Y):
+        raise InvalidSetting(f"{len(X)} inputs and {len(Y)} outputs: they must match")
+    network, inputs, output = Network(X.shape[1], tuple(hidden)), Scale.of(X), Scale.of(Y)
+    training = train(trainer, network, inputs.down(X), output.down(Y)[:, 0], network.initial(rng), iterations, callback)
+    return Regressor(network, training.w, inputs, output, training)

@@ -1,0 +1,98 @@
+"""Trainers of networks under one interface: write one file with a `run` method and add its line to ``TRAINERS``."""
+
+from __future__ import annotations
+
+from time import perf_counter
+
+import numpy as np
+
+from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.learn.arrays import Array
+from pin_metaik.learn.network import Network
+from pin_metaik.learn.trainers.bfgs import BFGS
+from pin_metaik.learn.trainers.levenberg import LevenbergMarquardt
+from pin_metaik.learn.trainers.minpack import Minpack
+from pin_metaik.learn.trainers.protocol import Callback, Finished, Record, Task, Trainer, Training
+from pin_metaik.learn.trainers.rprop import Rprop
+from pin_metaik.learn.trainers.scg import SCG
+
+TRAINERS: dict[str, type[Trainer]] = {
+    "lm": LevenbergMarquardt,
+    "minpack": Minpack,
+    "bfgs": BFGS,
+    "rprop": Rprop,
+    "scg": SCG,
+}
+
+
+def make_trainer(trainer: str | Trainer) -> Trainer:
+    """A trainer from its name, with its default settings; an object is returned as it is.
+
+    Raises:
+        UnknownName: No trainer of that name.
+    """
+    if not isinstance(trainer, str):
+        return trainer
+    if trainer not in TRAINERS:
+        raise UnknownName("trainer", trainer, TRAINERS)
+    return TRAINERS[trainer]()
+
+
+def train(
+    trainer: str | Trainer,
+    network: Network,
+    X: Array,
+    y: Array,
+    w: Array,
+    iterations: int,
+    callback: Callback | None = None,
+) -> Training:
+    """Train a network from weights w; Ctrl-C ends it with the best weights so far.
+
+    Args:
+        trainer: By name or as an object.
+        network: The layers.
+        X: Inputs (n, d), scaled.
+        y: Outputs (n,), scaled.
+        w: First weights (count,).
+        iterations: At most.
+        callback: Called after every iteration with its number and the mean squared error.
+
+    Raises:
+        UnknownName: No trainer of that name.
+        InvalidSetting: Fewer than one iteration, or fewer data than weights.
+    """
+    trainer = make_trainer(trainer)
+    if iterations < 1:
+        raise InvalidSetting(f"iterations must be at least 1, not {iterations!r}")
+    if len(X) < network.count:
+        raise InvalidSetting(f"{len(X)} data are too few for the {network.count} weights of {network}")
+    task = Task(network, X, y)
+    record = Record(w, task.loss(w)[0], iterations, callback)
+    began = perf_counter()
+    converged = interrupted = False
+    try:
+        trainer.run(task, w, record, iterations)
+        converged = True
+    except Finished:
+        pass
+    except KeyboardInterrupt:
+        interrupted = True
+    seconds = perf_counter() - began
+    trace = np.array(record.trace)
+    return Training(record.w, record.mse, len(trace), seconds, converged, interrupted, trace)
+
+
+__all__ = [
+    "BFGS",
+    "SCG",
+    "TRAINERS",
+    "Callback",
+    "LevenbergMarquardt",
+    "Minpack",
+    "Rprop",
+    "Trainer",
+    "Training",
+    "make_trainer",
+    "train",
+]

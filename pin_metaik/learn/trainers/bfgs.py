@@ -1,0 +1,30 @@
+"""Quasi-Newton: BFGS, by scipy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from scipy.optimize import OptimizeResult, minimize
+
+from pin_metaik.learn.arrays import Array
+from pin_metaik.learn.trainers.protocol import Record, Task
+
+
+@dataclass(frozen=True)
+class BFGS:
+    """Broyden, Fletcher, Goldfarb and Shanno 1970; an iteration is one line search.
+
+    Attributes:
+        tolerance: Largest component of the gradient that counts as zero.
+    """
+
+    tolerance: float = 1e-12
+
+    def run(self, task: Task, w: Array, record: Record, iterations: int) -> None:
+        """Train."""
+
+        def tell(intermediate_result: OptimizeResult) -> None:
+            record.tell(intermediate_result.x, float(intermediate_result.fun))
+
+        options = {"maxiter": iterations, "gtol": self.tolerance}
+        minimize(task.loss, w, jac=True, method="BFGS", callback=tell, options=options)

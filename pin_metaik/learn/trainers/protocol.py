@@ -1,0 +1,113 @@
+"""What a trainer is, and what it is given: a task to reduce the error of, and a record that keeps the best."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from pin_metaik.learn.arrays import Array
+from pin_metaik.learn.network import Network
+
+Callback = Callable[[int, float], object]
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """A network and the data it shall fit: mean squared error, residuals and their derivatives.
+
+    Attributes:
+        network: Its layers.
+        X: Inputs (n, d).
+        y: Outputs (n,).
+    """
+
+    network: Network
+    X: Array
+    y: Array
+
+    def residuals(self, w: Array) -> Array:
+        """Errors (n,)."""
+        return self.network.outputs(w, self.X) - self.y
+
+    def jacobian(self, w: Array) -> Array:
+        """Their derivatives by the weights (n, count)."""
+        return self.network.jacobian(w, self.X)
+
+    def loss(self, w: Array) -> tuple[float, Array]:
+        """Mean squared error and its gradient (count,)."""
+        return self.network.gradient(w, self.X, self.y)
+
+
+class Record:
+    """What happened so far. A trainer tells it every iteration; it counts, keeps the best, and stops by an exception.
+
+    Attributes:
+        w: Best weights.
+        mse: Their mean squared error.
+        trace: Error after every iteration.
+    """
+
+    def __init__(self, w: Array, mse: float, iterations: int, callback: Callback | None) -> None:
+        self.w, self.mse = w.copy(), mse
+        self.trace: list[float] = []
+        self._iterations, self._callback = iterations, callback
+
+    def tell(self, w: Array, mse: float) -> None:
+        """One more iteration led to weights w with this error.
+
+        Raises:
+            Finished: It was the last one allowed.
+        """
+        if mse < self.mse:
+            self.w, self.mse = w.copy(), mse
+        self.trace.append(mse)
+        if self._callback is not None:
+            self._callback(len(self.trace), mse)
+        if len(self.trace) >= self._iterations:
+            raise Finished
+
+
+class Finished(Exception):
+    """The iterations are spent."""
+
+
+@dataclass(frozen=True, eq=False)
+class Training:
+    """How a network was trained.
+
+    Attributes:
+        w: Best weights found (count,).
+        mse: Their mean squared error on the scaled data.
+        iterations: Made.
+        seconds: Taken, s.
+        converged: Whether the trainer ended by itself, before its iterations were spent.
+        interrupted: Whether Ctrl-C ended it.
+        trace: Error after every iteration (i,).
+    """
+
+    w: Array
+    mse: float
+    iterations: int
+    seconds: float
+    converged: bool
+    interrupted: bool
+    trace: np.ndarray
+
+
+@runtime_checkable
+class Trainer(Protocol):
+    """Anything that improves weights step by step; its settings are fields of a frozen dataclass."""
+
+    def run(self, task: Task, w: Array, record: Record, iterations: int) -> None:
+        """Improve the weights w (count,), telling the record after every iteration; return when nothing is gained.
+
+        Args:
+            task: What to fit.
+            w: Where to begin.
+            record: Told after every iteration; it ends the training when the iterations are spent.
+            iterations: How many those are, for trainers that must know beforehand.
+        """
+        ...

@@ -1,0 +1,78 @@
+"""Mobile robots: shortest paths among polygons, and time-optimal trajectories along them.
+
+from pin_metaik import mobile
+
+scene = mobile.load_scene("ten_obstacles")          # or your own: mobile.Scene(start, goal, polygons, bounds)
+plan = mobile.plan_path(scene)                      # the shortest path, proven free; or "ga", "pso", "de" ...
+problem = mobile.PathProblem.of(scene, radius=0.23, margin=0.1)
+trajectory = mobile.plan_trajectory(mobile.plan_path(problem).path, mobile.NOMAD_200, scene.obstacles)
+"""
+
+from importlib.util import find_spec
+
+from pin_metaik.errors import MissingExtra
+
+if find_spec("shapely") is None:
+    raise MissingExtra("planning for mobile robots", "mobile")
+
+from pin_metaik.mobile.body import configurations, mobile_robot, velocities
+from pin_metaik.mobile.errors import Blocked, NoPath
+from pin_metaik.mobile.motion.fastest import fastest_trajectory
+from pin_metaik.mobile.motion.learned import LearnedTurn, learn_turn
+from pin_metaik.mobile.motion.route import Route
+from pin_metaik.mobile.motion.timing import TrajectoryPlan, plan_trajectory
+from pin_metaik.mobile.motion.trajectory import Samples, Trajectory
+from pin_metaik.mobile.motion.vehicle import NOMAD_200, NOMAD_200_DRIVER, VEHICLES, SynchroDrive, load_vehicle
+from pin_metaik.mobile.paths.exact import shortest_path
+from pin_metaik.mobile.paths.fitness import FITNESSES, ExactFitness, Fitness, PaperFitness
+from pin_metaik.mobile.paths.homotopy import shortest_paths
+from pin_metaik.mobile.paths.path import Path
+from pin_metaik.mobile.paths.planning import PathPlan, PathProblem, PathStatus, plan_path
+from pin_metaik.mobile.paths.visibility import Visibility
+from pin_metaik.mobile.world.freespace import FreeSpace
+from pin_metaik.mobile.world.grids import OccupancyGrid, grid_of, read_grid
+from pin_metaik.mobile.world.polygons import read_polygons
+from pin_metaik.mobile.world.random_scene import random_scene
+from pin_metaik.mobile.world.scene import Scene, load_scene, scene_names
+
+__all__ = [
+    "FITNESSES",
+    "NOMAD_200",
+    "NOMAD_200_DRIVER",
+    "VEHICLES",
+    "Blocked",
+    "ExactFitness",
+    "Fitness",
+    "FreeSpace",
+    "LearnedTurn",
+    "NoPath",
+    "OccupancyGrid",
+    "PaperFitness",
+    "Path",
+    "PathPlan",
+    "PathProblem",
+    "PathStatus",
+    "Route",
+    "Samples",
+    "Scene",
+    "SynchroDrive",
+    "Trajectory",
+    "TrajectoryPlan",
+    "Visibility",
+    "configurations",
+    "fastest_trajectory",
+    "grid_of",
+    "learn_turn",
+    "load_scene",
+    "load_vehicle",
+    "mobile_robot",
+    "plan_path",
+    "plan_trajectory",
+    "random_scene",
+    "read_grid",
+    "read_polygons",
+    "scene_names",
+    "shortest_path",
+    "shortest_paths",
+    "velocities",
+]

@@ -1,0 +1,258 @@
+"""The turn as a network learns it: tangent lengths for a speed and an angle, and what their errors cost.
+
+The closed form needs none of this: the tangent length is the speed times a function of the angle. It is here because a
+paper planned with it, and because it shows what a network's error of a few millimetres does to a robot.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.learn import OutsideTraining, Regressor, Trainer, fit
+from pin_metaik.learn.arrays import Array
+from pin_metaik.mobile.motion.turn import lead_time
+from pin_metaik.mobile.motion.turn_data import coarse_grid, judging_points
+from pin_metaik.mobile.motion.vehicle import SynchroDrive
+
+DesignName = Literal["paper", "log"]
+
+
+@dataclass(frozen=True)
+class Design:
+    """What a network sees of a turn, and what it says.
+
+    Attributes:
+        inputs: From speeds (n,) and angles (n,) to inputs (n, 2).
+        output: From tangent lengths (n,) to outputs (n,).
+        tangent: And back.
+    """
+
+    inputs: Callable[[Array, Array], Array]
+    output: Callable[[Array], Array]
+    tangent: Callable[[Array], Array]
+
+
+# Tangent lengths span three decades and rise like a square root at small angles. Through logarithms both are straight,
+# and the mean squared error is one of relative errors, which is what the paper measures.
+DESIGNS: dict[str, Design] = {
+    "paper": Design(lambda v, theta: np.column_stack((v, theta)), lambda a: a, lambda y: y),
+    "log": Design(lambda v, theta: np.column_stack((np.log(v), np.sqrt(theta))), np.log, np.exp),
+}
+
+
+@dataclass(frozen=True)
+class TurnErrors:
+    """Errors of tangent lengths over a test set.
+
+    Attributes:
+        E0: Mean relative error, percent.
+        Em: Largest relative error, percent.
+        E5: Points with more than 5 percent.
+        F0: Mean error as a share of the longest tangent, percent.
+        Fm: Largest error as such a share, percent.
+        n: Points.
+    """
+
+    E0: float
+    Em: float
+    E5: int
+    F0: float
+    Fm: float
+    n: int
+
+
+@dataclass(frozen=True)
+class TurnReport:
+    """What a network did to a plan.
+
+    Attributes:
+        tangent_error: Largest error of a tangent length in the plan, m.
+        exact: Corners (from 1) outside its training range, planned with the closed form.
+    """
+
+    tangent_error: float
+    exact: tuple[int, ...]
+
+    def __str__(self) -> str:
+        said = f"the network's tangent lengths are wrong by up to {1e3 * self.tangent_error:.3g} mm"
+        if self.exact:
+            said += f"; corner {', '.join(map(str, self.exact))} lies outside its training range: closed form there"
+        return said
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedTurn:
+    """A network in place of the closed form, for one robot.
+
+    Attributes:
+        vehicle: The robot it was learned for.
+        design: What it sees and says.
+        regressor: The network.
+        angles: Smallest and largest angle it was trained with, rad.
+        speeds: Smallest and largest speed, m/s.
+    """
+
+    vehicle: SynchroDrive
+    design: DesignName
+    regressor: Regressor
+    angles: tuple[float, float]
+    speeds: tuple[float, float]
+
+    def tangent(self, v: ArrayLike, theta: ArrayLike) -> Array:
+        """Tangent lengths (...) in m at speeds (...) in m/s and angles (...) in rad; 0 at speed 0.
+
+        Warns:
+            OutsideTraining: Speeds above 0 or angles outside the training range.
+
+        Raises:
+            InvalidSetting: Speeds below 0, angles outside [0, pi), or numbers that are not finite.
+        """
+        v, theta = np.broadcast_arrays(np.asarray(v, dtype=float), np.asarray(theta, dtype=float))
+        if not (np.all((v >= 0) & (v < np.inf)) and np.all((theta >= 0) & (theta < np.pi))):
+            raise InvalidSetting("speeds must be finite and at least 0, angles from 0 to below pi")
+        moving = v > 0
+        asked = ~self.knows(v, theta) & moving
+        if asked.any():
+            warnings.warn(
+                f"{asked.sum()} of {asked.size} turns lie outside the training range of {self.speeds[0]:.4g} to "
+                f"{self.speeds[1]:.4g} m/s and {np.degrees(self.angles[0]):.4g} to {np.degrees(self.angles[1]):.4g} "
+                "degrees: the error there is unknown",
+                OutsideTraining,
+                stacklevel=2,
+            )
+        lengths = np.zeros(v.shape)
+        lengths[moving] = self._predict(v[moving], theta[moving])
+        return lengths
+
+    def knows(self, v: ArrayLike, theta: ArrayLike) -> NDArray[np.bool_]:
+        """Whether speeds (...) and angles (...) lie in the training range."""
+        v, theta = np.asarray(v), np.asarray(theta)
+        slack = 1 + 1e-9
+        fast = (v * slack >= self.speeds[0]) & (v <= self.speeds[1] * slack)
+        turned = (theta * slack >= self.angles[0]) & (theta <= self.angles[1] * slack)
+        return np.asarray(fast & turned)
+
+    def at(self, theta: Array) -> LearnedCorners:
+        """The network at the corners of a route, with angles (n,) in rad.
+
+        Warns:
+            OutsideTraining: Angles outside the training range: there the closed form is used.
+        """
+        known = self.knows(self.speeds[1], theta)
+        if not known.all():
+            corners = ", ".join(f"{i + 1} ({np.degrees(theta[i]):.3g} degrees)" for i in np.flatnonzero(~known))
+            warnings.warn(
+                f"corner {corners} lies outside the training range of {np.degrees(self.angles[0]):.4g} to "
+                f"{np.degrees(self.angles[1]):.4g} degrees: the closed form is used there",
+                OutsideTraining,
+                stacklevel=2,
+            )
+        return LearnedCorners(self, theta, known, lead_time(theta, self.vehicle))
+
+    def errors(self) -> TurnErrors:
+        """Its errors over the paper's test set, from 1 degree on."""
+        points = judging_points(self.vehicle)
+        true = points[:, 0] * lead_time(points[:, 1], self.vehicle)
+        return turn_errors(self._predict(points[:, 0], points[:, 1]), true)
+
+    def _predict(self, v: Array, theta: Array) -> Array:
+        design = DESIGNS[self.design]
+        v = np.maximum(v, self.speeds[0] / 100)  # the logarithm of nearly nothing
+        return design.tangent(self.regressor.predict(design.inputs(v, theta)))
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedCorners:
+    """The network at given corners.
+
+    Attributes:
+        model: The network.
+        theta: Angles (n,), rad.
+        known: Whether they are in the training range (n,).
+        g: The closed form (n,), s.
+    """
+
+    model: LearnedTurn
+    theta: Array
+    known: NDArray[np.bool_]
+    g: Array
+
+    @property
+    def slowest(self) -> float:
+        """The slowest speed it knows, m/s: below, the robot stops."""
+        return self.model.speeds[0]
+
+    def tangents(self, V: Array) -> Array:
+        """Tangent lengths (k, n) in m at speeds V (k, n) in m/s, 0 or in the training range."""
+        lengths = V * self.g
+        asked = (V > 0) & self.known
+        lengths[asked] = self.model._predict(V[asked], np.broadcast_to(self.theta, V.shape)[asked])
+        return lengths
+
+    def report(self, v: Array) -> TurnReport:
+        """The errors at the speeds (n,) of a plan."""
+        error = np.abs(self.tangents(v[None])[0] - v * self.g)
+        return TurnReport(float(error.max(initial=0.0)), tuple(int(i) + 1 for i in np.flatnonzero(~self.known)))
+
+
+def turn_errors(predicted: Array, true: Array) -> TurnErrors:
+    """Errors of predicted tangent lengths (n,) against true ones (n,), none of them 0."""
+    relative = 100 * np.abs(predicted - true) / true
+    full = 100 * np.abs(predicted - true) / true.max()
+    return TurnErrors(
+        float(relative.mean()),
+        float(relative.max()),
+        int((relative > 5).sum()),
+        float(full.mean()),
+        float(full.max()),
+        len(true),
+    )
+
+
+def learn_turn(
+    vehicle: SynchroDrive,
+    *,
+    design: DesignName = "log",
+    hidden: Sequence[int] = (5, 5),
+    trainer: str | Trainer = "lm",
+    iterations: int = 300,
+    points: Array | None = None,
+    rng: int | np.random.Generator | None = 0,
+    callback: Callable[[int, float], object] | None = None,
+) -> LearnedTurn:
+    """Train a network on exact tangent lengths.
+
+    Args:
+        vehicle: The robot.
+        design: ``log`` (logarithms of speed and length, square root of the angle) or ``paper`` (the bare numbers).
+        hidden: Neurons of each hidden layer.
+        trainer: By name or as an object.
+        iterations: At most.
+        points: Speeds and angles (n, 2) in m/s and rad to learn from; default: the paper's grid. ``log`` leaves out
+            angles below half a degree, whose logarithms run away.
+        rng: Seed or generator of the first weights.
+        callback: Called after every iteration.
+
+    Raises:
+        UnknownName: No such design or trainer.
+        InvalidSetting: Too few points.
+    """
+    if design not in DESIGNS:
+        raise UnknownName("design", design, DESIGNS)
+    points = coarse_grid(vehicle) if points is None else points
+    if design == "log":
+        points = points[points[:, 1] >= np.radians(0.5)]
+    v, theta = points.T
+    use = DESIGNS[design]
+    alpha = v * lead_time(theta, vehicle)
+    regressor = fit(use.inputs(v, theta), use.output(alpha), hidden, trainer, iterations, rng, callback)
+    return LearnedTurn(
+        vehicle, design, regressor, (float(theta.min()), float(theta.max())), (float(v.min()), float(v.max()))
+    )

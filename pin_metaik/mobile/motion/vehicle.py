@@ -1,0 +1,67 @@
+"""Synchro-drive robots: all wheels roll and steer together, so speed and turning rate are free of each other."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from pin_metaik.errors import InvalidSetting, UnknownName
+
+INCH = 0.0254  # m
+
+
+@dataclass(frozen=True)
+class SynchroDrive:
+    """What a robot can do: ``x' = v cos theta``, ``y' = v sin theta``, ``theta' = omega``, and four limits.
+
+    Attributes:
+        name: What to call it.
+        v_max: Largest speed, m/s.
+        a_max: Largest acceleration, m/s^2.
+        omega_max: Largest turning rate, rad/s.
+        alpha_max: Largest angular acceleration, rad/s^2.
+        radius: Of the circle around it, m.
+
+    Raises:
+        InvalidSetting: A limit that is not a number above zero, or a radius below zero.
+    """
+
+    name: str
+    v_max: float
+    a_max: float
+    omega_max: float
+    alpha_max: float
+    radius: float
+
+    def __post_init__(self) -> None:
+        for limit in ("v_max", "a_max", "omega_max", "alpha_max"):
+            value = getattr(self, limit)
+            if not 0 < value < math.inf:
+                raise InvalidSetting(f"{limit} must be a finite number above 0, not {value!r}")
+        if not 0 <= self.radius < math.inf:
+            raise InvalidSetting(f"radius must be a finite number of at least 0, not {self.radius!r}")
+
+    @property
+    def saturation(self) -> float:
+        """The turn, in rad, from which on the robot reaches its largest turning rate."""
+        return self.omega_max**2 / self.alpha_max
+
+
+# The paper gives v_max = 40 in/s only. The rest: a_max and omega_max from the Player plugin for the Nomad 200 (V. Costa
+# da Silva Campos 2008), alpha_max from TeamBots' limits of the Nomad 150 (T. Balch). Public drivers of the Nomad 200
+# cap its speed at 20 in/s, half of what the paper uses: NOMAD_200_DRIVER is that robot, with the plugin's alpha_max.
+NOMAD_200 = SynchroDrive("nomad200", 40 * INCH, 30 * INCH, math.radians(45), math.radians(50), 0.23)
+NOMAD_200_DRIVER = SynchroDrive("nomad200_driver", 20 * INCH, 30 * INCH, math.radians(45), math.radians(30), 0.23)
+
+VEHICLES = {vehicle.name: vehicle for vehicle in (NOMAD_200, NOMAD_200_DRIVER)}
+
+
+def load_vehicle(name: str) -> SynchroDrive:
+    """A robot by name.
+
+    Raises:
+        UnknownName: None of that name.
+    """
+    if name not in VEHICLES:
+        raise UnknownName("vehicle", name, VEHICLES)
+    return VEHICLES[name]

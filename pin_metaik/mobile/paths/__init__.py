@@ -1,0 +1,1 @@
+"""Paths of a point among polygons: the shortest, its homotopic alternatives, and those metaheuristics find."""

@@ -1,0 +1,92 @@
+"""A path: a polyline with its length, written as CSV or JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path as File
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pin_metaik.errors import InvalidGeometry
+from pin_metaik.optimize.space import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """Straight lines from point to point.
+
+    Attributes:
+        points: (n, 2) start, corners and goal, n >= 2, read-only; in: anything numpy makes that of.
+
+    Raises:
+        InvalidGeometry: The points are not (n, 2) finite numbers.
+    """
+
+    points: Array
+
+    def __post_init__(self) -> None:
+        points = _points(self.points)
+        points.flags.writeable = False
+        object.__setattr__(self, "points", points)
+
+    @cached_property
+    def lengths(self) -> Array:
+        """Length of each segment (n - 1,)."""
+        along = np.diff(self.points, axis=0)
+        return np.hypot(along[:, 0], along[:, 1])
+
+    @property
+    def length(self) -> float:
+        """Length of the whole."""
+        return float(self.lengths.sum())
+
+    @property
+    def corners(self) -> Array:
+        """Where it bends: all points but start and goal (n - 2, 2)."""
+        return self.points[1:-1]
+
+    def straightened(self, slack: float = 0.0) -> Path:
+        """The same path without repeated points and points (nearly) on the line between their neighbours.
+
+        Args:
+            slack: How far from that line a point may be to be left out.
+        """
+        kept = [self.points[0]]
+        for point, following in zip(self.points[1:-1], self.points[2:], strict=True):
+            across, ahead = _offset(kept[-1], following, point)
+            repeated = np.hypot(*(point - kept[-1])) <= slack
+            if not repeated and not (across <= slack and ahead):
+                kept.append(point)
+        return Path(np.array([*kept, self.points[-1]]))
+
+    def write(self, file: str | File) -> None:
+        """Write x and y of the points as CSV."""
+        write_table(file, ("x", "y"), self.points)
+
+
+def write_table(file: str | File, header: Iterable[str], rows: Array) -> None:
+    """Write a table (n, c) as CSV with all digits."""
+    lines = [",".join(header), *(",".join(map(repr, row)) for row in rows.tolist())]
+    File(file).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _offset(a: Array, b: Array, point: Array) -> tuple[float, bool]:
+    """Distance of a point from the line a-b, and whether it lies between them."""
+    along, to = b - a, point - a
+    length = np.hypot(*along)
+    if length == 0.0:
+        return float(np.hypot(*to)), False
+    return abs(float(along[0] * to[1] - along[1] * to[0])) / float(length), 0 <= float(to @ along) <= float(length) ** 2
+
+
+def _points(values: ArrayLike) -> Array:
+    try:
+        points = np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        points = np.empty(0)
+    if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2 or not np.isfinite(points).all():
+        raise InvalidGeometry(f"a path is at least two points (x, y), finite; got {values!r}")
+    return points

@@ -1,0 +1,152 @@
+"""Pictures of scenes, paths and trajectories, drawn into a matplotlib figure that is handed in.
+
+Nothing here imports matplotlib: make a ``matplotlib.figure.Figure`` (the extra ``plots``), or let ``save`` do it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from importlib.util import find_spec
+from pathlib import Path as File
+from typing import Any
+
+import numpy as np
+import shapely
+
+from pin_metaik.errors import MissingExtra
+from pin_metaik.mobile.motion.timing import TrajectoryPlan
+from pin_metaik.mobile.paths.path import Path
+from pin_metaik.mobile.paths.planning import PathPlan
+from pin_metaik.mobile.world.growth import rings
+from pin_metaik.mobile.world.scene import Scene
+from pin_metaik.optimize.space import Array
+
+# Okabe and Ito: told apart by every eye and in grey.
+BLUE, RED, GREEN, GREY, STONE = "#0072b2", "#d55e00", "#009e73", "#999999", "#c9c5bd"
+DPI = 150
+
+
+def save(file: str | File, draw: Callable[[Any], None], size: tuple[float, float] = (6.0, 6.0)) -> None:
+    """Draw a figure and write it.
+
+    Args:
+        file: Where to; the suffix says what (``.png``, ``.svg``, ``.pdf``).
+        draw: Draws into an empty figure, e.g. ``lambda figure: draw_plan(figure, plan)``.
+        size: Width and height in inches.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+    """
+    if find_spec("matplotlib") is None:
+        raise MissingExtra("drawing figures", "plots")
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=size, layout="constrained")
+    draw(figure)
+    figure.savefig(file, dpi=DPI)
+
+
+def draw_scene(ax: Any, scene: Scene, region: shapely.Geometry | None = None) -> None:
+    """Obstacles, walls, start and goal on axes; with the free region the obstacles' growth as dotted lines."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Outline
+
+    for polygon in scene.obstacles:
+        outlines = [Outline(np.vstack((ring, ring[:1])), closed=True) for ring in rings(polygon)]
+        ax.add_patch(
+            PathPatch(Outline.make_compound_path(*outlines), facecolor=STONE, edgecolor="#6b675f", linewidth=0.8)
+        )
+    if region is not None:
+        for ring in rings(region):
+            ax.plot(*np.vstack((ring, ring[:1])).T, ":", color=GREY, linewidth=0.8)
+    x_min, y_min, x_max, y_max = _window(scene)
+    if scene.bounds is not None:
+        ax.plot([x_min, x_max, x_max, x_min, x_min], [y_min, y_min, y_max, y_max, y_min], color="black", linewidth=1.2)
+    ax.plot(*scene.start, "o", color=GREEN, markersize=7, zorder=5)
+    ax.plot(*scene.goal, "*", color=RED, markersize=12, zorder=5)
+    room = 0.02 * max(x_max - x_min, y_max - y_min)
+    ax.set(xlim=(x_min - room, x_max + room), ylim=(y_min - room, y_max + room), aspect="equal")
+
+
+def draw_plan(figure: Any, plan: PathPlan) -> None:
+    """A planned path in its scene; a path that collides is red and says so."""
+    ax = figure.subplots()
+    problem = plan.problem
+    draw_scene(ax, problem.scene, problem.space.region if problem.space.clearance else None)
+    ax.plot(*plan.path.points.T, "-o", color=BLUE if plan.success else RED, linewidth=2, markersize=3)
+    ax.set_title(
+        f"{plan.problem.scene.name}, {plan.method}: length {plan.length:.4g}, {_verdict(plan)}", fontsize="medium"
+    )
+
+
+def draw_runs(ax: Any, scene: Scene, runs: Sequence[Path], optimum: Path | None, colour: str = BLUE) -> None:
+    """Many runs over one another in their scene, and the shortest path dashed."""
+    draw_scene(ax, scene)
+    for path in runs:
+        ax.plot(*path.points.T, color=colour, linewidth=0.7, alpha=max(0.08, min(0.6, 6 / max(len(runs), 1))))
+    if optimum is not None:
+        ax.plot(*optimum.points.T, "--", color="black", linewidth=1.4)
+
+
+def draw_trajectory(figure: Any, plan: TrajectoryPlan, scene: Scene) -> None:
+    """Path and motion in the scene; beside it speed, turning rate and clearance over time."""
+    grid = figure.add_gridspec(3, 2, width_ratios=(1.25, 1))
+    samples = plan.trajectory.sample()
+    world = figure.add_subplot(grid[:, 0])
+    draw_scene(world, scene)
+    world.plot(*plan.route.path.points.T, "--", color=GREY, linewidth=1)
+    _along(figure, world, samples.xy, samples.v)
+    for k in np.linspace(0, len(samples.t) - 1, 12).astype(int):
+        world.add_patch(_disc(samples.xy[k], plan.radius))
+    world.set(xlabel="x, m", ylabel="y, m")
+    world.set_title(f"{plan.method}: {plan.time:.2f} s ({plan.stop_and_turn:.2f} s with stops)", fontsize="medium")
+
+    vehicle = plan.route.vehicle
+    speed, turning, clear = (figure.add_subplot(grid[i, 1]) for i in range(3))
+    speed.plot(samples.t, samples.v, color=BLUE)
+    speed.axhline(vehicle.v_max, color=GREY, linewidth=0.8, linestyle=":")
+    speed.set_ylabel("speed, m/s")
+    turning.plot(samples.t, np.degrees(samples.omega), color=RED)
+    for limit in (-vehicle.omega_max, vehicle.omega_max):
+        turning.axhline(np.degrees(limit), color=GREY, linewidth=0.8, linestyle=":")
+    turning.set_ylabel("turning, deg/s")
+    if plan.obstacles:
+        clear.plot(
+            samples.t, shapely.distance(shapely.points(samples.xy), shapely.union_all(plan.obstacles)), color=GREEN
+        )
+        clear.axhline(plan.radius, color=GREY, linewidth=0.8, linestyle=":")
+        clear.set_ylim(bottom=0)
+    clear.set(xlabel="time, s", ylabel="clearance, m")
+    for ax in (speed, turning, clear):
+        ax.grid(alpha=0.3)
+        ax.set_xlim(0, plan.time)
+
+
+def _along(figure: Any, ax: Any, xy: Array, v: Array) -> None:
+    """A line coloured by the speed."""
+    from matplotlib.collections import LineCollection
+
+    pieces = np.stack((xy[:-1], xy[1:]), axis=1)
+    line = LineCollection(list(pieces), array=(v[:-1] + v[1:]) / 2, cmap="viridis", linewidth=2.5)
+    ax.add_collection(line)
+    figure.colorbar(line, ax=ax, location="bottom", shrink=0.6, label="speed, m/s")
+
+
+def _disc(centre: Array, radius: float) -> Any:
+    from matplotlib.patches import Circle
+
+    return Circle(tuple(centre), radius, facecolor="none", edgecolor=GREY, linewidth=0.7)
+
+
+def _verdict(plan: PathPlan) -> str:
+    if not plan.success:
+        return "goes through an obstacle"
+    return "the shortest" if not plan.gap else f"{100 * plan.gap:.2f} % above the shortest"
+
+
+def _window(scene: Scene) -> tuple[float, float, float, float]:
+    if scene.bounds is not None:
+        return scene.bounds
+    everything = shapely.union_all([shapely.MultiPoint([scene.start, scene.goal]), *scene.obstacles])
+    x_min, y_min, x_max, y_max = everything.bounds
+    return x_min, y_min, x_max, y_max

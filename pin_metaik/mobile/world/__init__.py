@@ -1,0 +1,1 @@
+"""Where mobile robots move: polygons, occupancy grids, scenes and their free space."""

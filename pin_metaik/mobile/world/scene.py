@@ -1,0 +1,165 @@
+"""A planning problem: obstacles, walls, start and goal; a dozen lines of JSON on disk."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any
+
+import shapely
+
+from pin_metaik.errors import InvalidGeometry, UnknownName
+from pin_metaik.mobile.world.grids import read_grid
+from pin_metaik.mobile.world.polygons import read_polygons
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Where a robot is, where it shall go and what stands in its way; lengths in m (or any one unit).
+
+    Attributes:
+        start: (x, y).
+        goal: (x, y).
+        obstacles: Polygons; they may overlap or touch. In: anything ``read_polygons`` takes.
+        bounds: Walls (x_min, y_min, x_max, y_max) around the workspace, or None for a plane without end.
+        name: What to call it.
+
+    Raises:
+        InvalidGeometry: Points that are not two finite numbers, bounds that are crossed, polygons that are none.
+    """
+
+    start: Point
+    goal: Point
+    obstacles: tuple[shapely.Polygon, ...] = ()
+    bounds: tuple[float, float, float, float] | None = None
+    name: str = "scene"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "start", _point("start", self.start))
+        object.__setattr__(self, "goal", _point("goal", self.goal))
+        object.__setattr__(self, "obstacles", read_polygons(self.obstacles))
+        if self.bounds is not None:
+            object.__setattr__(self, "bounds", _bounds(self.bounds))
+
+    @property
+    def box(self) -> tuple[float, float, float, float]:
+        """The bounds; without any, a box with room for every path around everything."""
+        if self.bounds is not None:
+            return self.bounds
+        everything = shapely.union_all([shapely.MultiPoint([self.start, self.goal]), *self.obstacles])
+        x_min, y_min, x_max, y_max = everything.bounds
+        room = max(x_max - x_min, y_max - y_min, 1e-6)
+        return x_min - room, y_min - room, x_max + room, y_max + room
+
+    def between(self, start: Any, goal: Any) -> Scene:
+        """The same world with another start and goal; None keeps the one there is."""
+        return replace(self, start=self.start if start is None else start, goal=self.goal if goal is None else goal)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, as a scene's JSON file has them; a polygon with holes as GeoJSON."""
+        return {
+            "start": list(self.start),
+            "goal": list(self.goal),
+            "bounds": None if self.bounds is None else list(self.bounds),
+            "obstacles": [_plain(polygon) for polygon in self.obstacles],
+        }
+
+
+def scene_names() -> list[str]:
+    """The scenes that come with the package."""
+    return sorted(_shipped())
+
+
+def load_scene(source: str | Path, start: Any = None, goal: Any = None) -> Scene:
+    """A scene by name, or from a file.
+
+    Args:
+        source: One of ``scene_names()``; the path of a scene (``.json`` with start, goal, obstacles and perhaps
+            bounds), of polygons (``.geojson``, ``.wkt``), of an occupancy grid (``.npy``) or a ROS map (``.yaml``).
+        start: (x, y) that replaces the file's; needed where the file has none.
+        goal: (x, y) that replaces the file's; needed where the file has none.
+
+    Raises:
+        UnknownName: No such scene.
+        InvalidGeometry: The file is missing or malformed; or nobody says where the start or goal is.
+    """
+    path = Path(source)
+    match path.suffix.lower():
+        case ".json":
+            return scene_of(_read(path), path.stem, start, goal)
+        case ".geojson" | ".wkt":
+            return scene_of({"obstacles": path}, path.stem, start, goal)
+        case ".npy" | ".yaml" | ".yml":
+            grid = read_grid(path)
+            return scene_of({"obstacles": grid.polygons, "bounds": grid.bounds}, path.stem, start, goal)
+    if str(source) not in _shipped():
+        raise UnknownName("scene", str(source), _shipped())
+    return scene_of(_read(_shipped()[str(source)]), str(source), start, goal)
+
+
+def scene_of(mapping: Mapping[str, Any], name: str = "scene", start: Any = None, goal: Any = None) -> Scene:
+    """A scene from the mapping its JSON file holds; ``start`` and ``goal`` replace the mapping's.
+
+    Raises:
+        InvalidGeometry: A key is missing or makes no sense.
+    """
+    given: dict[str, Any] = {"start": mapping.get("start") if start is None else start}
+    given["goal"] = mapping.get("goal") if goal is None else goal
+    if mapping.get("type") in ("FeatureCollection", "Feature", "GeometryCollection", "MultiPolygon", "Polygon"):
+        mapping = {"obstacles": mapping}
+    if "obstacles" not in mapping:
+        raise InvalidGeometry(f"{name} is not a scene: it has no 'obstacles'; keys: start, goal, obstacles, bounds")
+    for role, point in given.items():
+        if point is None:
+            raise InvalidGeometry(f"{name} does not say where the {role} is: give {role}=(x, y)")
+    return Scene(given["start"], given["goal"], mapping["obstacles"], mapping.get("bounds"), name)
+
+
+def _shipped() -> dict[str, Traversable]:
+    folder = files("pin_metaik.mobile") / "scenes"
+    return {entry.name.removesuffix(".json"): entry for entry in folder.iterdir() if entry.name.endswith(".json")}
+
+
+def _read(path: Path | Traversable) -> Mapping[str, Any]:
+    try:
+        mapping = json.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise InvalidGeometry(f"cannot read {path}: {error.strerror}") from None
+    except ValueError as error:
+        raise InvalidGeometry(f"{path} is not JSON: {error}") from None
+    if not isinstance(mapping, dict):
+        raise InvalidGeometry(f"{path} is not a scene: expected an object with start, goal, obstacles, bounds")
+    return mapping
+
+
+def _point(role: str, value: Any) -> Point:
+    try:
+        x, y = (float(v) for v in value)
+    except (TypeError, ValueError):
+        raise InvalidGeometry(f"the {role} is a point (x, y), got {value!r}") from None
+    if not (math.isfinite(x) and math.isfinite(y)):
+        raise InvalidGeometry(f"the {role} must be finite, got {value!r}")
+    return x, y
+
+
+def _bounds(value: Any) -> tuple[float, float, float, float]:
+    try:
+        x_min, y_min, x_max, y_max = (float(v) for v in value)
+    except (TypeError, ValueError):
+        raise InvalidGeometry(f"bounds are (x_min, y_min, x_max, y_max), got {value!r}") from None
+    if not (x_min < x_max and y_min < y_max and math.isfinite(x_max - x_min) and math.isfinite(y_max - y_min)):
+        raise InvalidGeometry(f"bounds must have x_min < x_max and y_min < y_max, finite; got {value!r}")
+    return x_min, y_min, x_max, y_max
+
+
+def _plain(polygon: shapely.Polygon) -> Any:
+    if polygon.interiors:
+        return json.loads(shapely.to_geojson(polygon))
+    return shapely.get_coordinates(polygon.exterior)[:-1].tolist()

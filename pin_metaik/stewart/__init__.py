@@ -1,0 +1,97 @@
+"""General Stewart platforms: analysis and dimensional optimisation, after Inner and Kucuk (TOK 2014).
+
+Lengths are in m and angles in rad everywhere but in files, which say their own units. Poses are those of the point P of
+the platform in the base frame: ``pin.SE3``, (4, 4), or many (k, 4, 4).
+
+from pin_metaik import stewart
+
+mechanism = stewart.load_mechanism("stroke_100")     # of the catalogue, or the path of a .toml file
+stewart.leg_lengths(mechanism.geometry, stewart.pose_at((0, 0, 0.23)))
+mechanism.survey().gdi
+stewart.design(mechanism).mechanism
+"""
+
+from pin_metaik.stewart.closure import ClosedModel, closed_model
+from pin_metaik.stewart.conditioning import Dexterity, best_length, characteristic_length, conditioning
+from pin_metaik.stewart.design import Designed, design
+from pin_metaik.stewart.fitness import Fitness, Score
+from pin_metaik.stewart.forward import Forward, ForwardStatus, all_forward, forward
+from pin_metaik.stewart.geometry import Geometry, legs_of
+from pin_metaik.stewart.grid import Grid
+from pin_metaik.stewart.interference import leg_distances
+from pin_metaik.stewart.inverse import leg_lengths, leg_vectors
+from pin_metaik.stewart.jacobian import homogenised, jacobian
+from pin_metaik.stewart.layouts import NAMED, standard_geometry
+from pin_metaik.stewart.library import load_mechanism, mechanism_names
+from pin_metaik.stewart.limits import LegLimits, PoseState
+from pin_metaik.stewart.mechanism import Mechanism
+from pin_metaik.stewart.picture import draw, draw_history, draw_into, save_picture
+from pin_metaik.stewart.poses import pose_at
+from pin_metaik.stewart.progress import progress_bar
+from pin_metaik.stewart.ranges import Ranges
+from pin_metaik.stewart.reading import read_mechanism
+from pin_metaik.stewart.singularity import Crossing, Singularities, crossings, singularities
+from pin_metaik.stewart.surveying import survey
+from pin_metaik.stewart.task import DesignTask
+from pin_metaik.stewart.trajectory import Motion, Trajectory, follow, judge_poses, straight
+from pin_metaik.stewart.urdf import save_urdf, to_urdf
+from pin_metaik.stewart.workspace import EmptyWorkspace, Verdict, Workspace
+from pin_metaik.stewart.writing import save_mechanism, to_toml
+
+__all__ = [
+    "NAMED",
+    "ClosedModel",
+    "Crossing",
+    "DesignTask",
+    "Designed",
+    "Dexterity",
+    "EmptyWorkspace",
+    "Fitness",
+    "Forward",
+    "ForwardStatus",
+    "Geometry",
+    "Grid",
+    "LegLimits",
+    "Mechanism",
+    "Motion",
+    "PoseState",
+    "Ranges",
+    "Score",
+    "Singularities",
+    "Trajectory",
+    "Verdict",
+    "Workspace",
+    "all_forward",
+    "best_length",
+    "characteristic_length",
+    "closed_model",
+    "conditioning",
+    "crossings",
+    "design",
+    "draw",
+    "draw_history",
+    "draw_into",
+    "follow",
+    "forward",
+    "homogenised",
+    "jacobian",
+    "judge_poses",
+    "leg_distances",
+    "leg_lengths",
+    "leg_vectors",
+    "legs_of",
+    "load_mechanism",
+    "mechanism_names",
+    "pose_at",
+    "progress_bar",
+    "read_mechanism",
+    "save_mechanism",
+    "save_picture",
+    "save_urdf",
+    "singularities",
+    "standard_geometry",
+    "straight",
+    "survey",
+    "to_toml",
+    "to_urdf",
+]

@@ -1,0 +1,92 @@
+"""Dimensional optimisation: a metaheuristic looks for the platform with the best fitness."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pin_metaik.optimize import AskTell, Budget, Result, Status, minimize
+from pin_metaik.optimize.space import Array
+from pin_metaik.stewart.fitness import UNUSABLE, Fitness, Score, task_of
+from pin_metaik.stewart.mechanism import Mechanism
+from pin_metaik.stewart.surveying import Watch
+
+
+@dataclass(frozen=True, eq=False)
+class Designed:
+    """What a design ended with.
+
+    Attributes:
+        mechanism: The best mechanism found, with the settings it was found with. If none was feasible, the one given.
+        score: Its fitness on the grid of the task, and the two parts of it; None if no design was feasible.
+        search: The search itself: why it ended, evaluations, seconds, trace.
+    """
+
+    mechanism: Mechanism
+    score: Score | None
+    search: Result
+
+    @property
+    def success(self) -> bool:
+        """Whether a feasible design was found. One found before an interruption counts."""
+        return self.score is not None
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether the search was interrupted; the mechanism is the best until then."""
+        return self.search.status is Status.INTERRUPTED
+
+    @property
+    def history(self) -> Array:
+        """Designs looked at and best fitness after each generation (g, 2); below 0 while none was feasible."""
+        assert self.search.trace is not None
+        return self.search.trace * [1.0, -1.0]
+
+    def __str__(self) -> str:
+        found = f"fitness {self.score.fitness:.4f}" if self.score else "no feasible design"
+        return f"{self.mechanism.name}: {found} after {self.search.evaluations} designs in {self.search.seconds:.3g} s"
+
+
+def design(
+    mechanism: Mechanism, *, rng: int | np.random.Generator | None = None, watch: Watch | None = None
+) -> Designed:
+    """Look for the dimensions with the best fitness, by the mechanism's task.
+
+    Ctrl-C ends the search and returns the best design so far (unless the first generation is not through).
+
+    Args:
+        mechanism: What to start from: the joints and legs there are, and everything that is fixed.
+        rng: Seed or generator instead of the task's seed; the same seed gives the same design.
+        watch: Called after every generation with (designs looked at, designs in all).
+
+    Returns:
+        The result; check ``result.success``.
+
+    Raises:
+        InvalidSetting: The mechanism has no task, or one that does not fit it.
+        InvalidBounds: Ranges that do not fit the mechanism, or leave nothing free.
+    """
+    task = task_of(mechanism)
+    fitness = Fitness(mechanism)
+    point = fitness.variables.point(mechanism.geometry, mechanism.limits)
+
+    def tell(search: AskTell) -> None:
+        if watch is not None:
+            watch(search.run.evaluations, task.evaluations)
+
+    found = minimize(
+        fitness,
+        fitness.variables.box,
+        task.algorithm,
+        Budget(evaluations=task.evaluations),
+        task.seed if rng is None else rng,
+        seeds=point if task.from_current else None,
+        trace=True,
+        callback=tell,
+    )
+    if found.cost >= UNUSABLE:
+        return Designed(mechanism, None, found)
+    geometry, limits = fitness.build(fitness.variables.dimensions(found.x))
+    score = fitness.score(fitness.workspace(geometry, limits))
+    return Designed(replace(mechanism, geometry=geometry, limits=limits), score, found)

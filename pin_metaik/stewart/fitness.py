@@ -1,0 +1,139 @@
+"""How good a design is: Eq. 10-11 weighed against the volume, and by how much a design that makes no sense fails."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.optimize.space import Array
+from pin_metaik.stewart.cells import cells_of
+from pin_metaik.stewart.geometry import Geometry, chords
+from pin_metaik.stewart.limits import LegLimits, PoseState
+from pin_metaik.stewart.mechanism import Mechanism
+from pin_metaik.stewart.ranges import Dimensions, Variables
+from pin_metaik.stewart.surveying import judge_cells, with_best_length
+from pin_metaik.stewart.task import DesignTask
+from pin_metaik.stewart.workspace import Workspace
+
+UNUSABLE = 1.0  # cost of an empty or singular workspace; feasible designs cost at most 0
+UNBUILDABLE = 2.0  # cost of legs or joints that are in each other's way, before counting by how much
+
+
+@dataclass(frozen=True)
+class Score:
+    """How good a workspace is.
+
+    Attributes:
+        fitness: The weighted sum; what is maximised.
+        dexterity: D, 0 ... 1.
+        workspace: V / cube^3.
+    """
+
+    fitness: float
+    dexterity: float
+    workspace: float
+
+
+class Fitness:
+    """The objective of a design: costs (k,) of points (k, v); the cost of a feasible design is minus its fitness.
+
+    Attributes:
+        variables: Between points and dimensions.
+        cube: Side in m of the cube whose volume counts as 1.
+    """
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        """The objective of this mechanism's task.
+
+        Raises:
+            InvalidSetting: The mechanism has no task, or no stroke to make volumes comparable with.
+            InvalidBounds: Ranges that do not fit the mechanism.
+        """
+        self.mechanism, self.task = mechanism, task_of(mechanism)
+        self.variables = Variables.of(self.task.ranges, mechanism.geometry, mechanism.limits)
+        self.cube = self.task.cube or 2.0 * self.variables.longest_stroke
+        if not self.cube > 0.0:
+            raise InvalidSetting("these legs have no stroke: give the design a cube for volumes to be measured by")
+
+    def __call__(self, X: Array) -> Array:
+        """Costs (k,) of the designs at points X (k, v)."""
+        return np.array([self.cost(x) for x in X])
+
+    def cost(self, x: Array) -> float:
+        """Minus the fitness; 1 ... 2 for a workspace that is empty or singular, more for what cannot be built."""
+        dimensions = self.variables.dimensions(x)
+        if missing := self.missing(dimensions):
+            return UNBUILDABLE + missing / self.cube
+        workspace = self.workspace(*self.build(dimensions))
+        if not workspace.regular.any():
+            return UNUSABLE
+        if (wrong := _wrong_side(workspace)) > 0.0:
+            return UNUSABLE + wrong
+        return -self.score(workspace).fitness
+
+    def missing(self, dimensions: Dimensions) -> float:
+        """How much length is missing for the joints to keep their gap and the legs to extend, m; 0 if none."""
+        gaps = np.concatenate(
+            (
+                chords(dimensions.base_radius, dimensions.base_angles),
+                chords(dimensions.platform_radius, dimensions.platform_angles),
+            )
+        )
+        short = np.maximum(self.task.joint_gap - gaps, 0.0).sum() + max(dimensions.shortest - dimensions.longest, 0.0)
+        return float(short) if gaps.min() > 0.0 else float(short) + self.cube
+
+    def build(self, dimensions: Dimensions) -> tuple[Geometry, LegLimits]:
+        """The platform with these dimensions.
+
+        Raises:
+            InvalidGeometry: If there is something missing.
+        """
+        geometry = replace(
+            self.mechanism.geometry,
+            base_radius=dimensions.base_radius,
+            platform_radius=dimensions.platform_radius,
+            base_angles=tuple(dimensions.base_angles.tolist()),
+            platform_angles=tuple(dimensions.platform_angles.tolist()),
+        )
+        return geometry, replace(self.mechanism.limits, shortest=dimensions.shortest, longest=dimensions.longest)
+
+    def workspace(self, geometry: Geometry, limits: LegLimits) -> Workspace:
+        """The workspace on the task's grid; unlike that of ``survey`` it may be empty."""
+        dexterity = self.mechanism.dexterity
+        cells = cells_of(self.task.grid, geometry, limits)
+        states, nu = np.empty(cells.shape, dtype=np.int8), np.empty(cells.shape)
+        length = dexterity.length if not isinstance(dexterity.length, str) else geometry.platform_radius
+        judge_cells(geometry, limits, cells, length, dexterity, states, nu)
+        return with_best_length(Workspace(geometry, limits, cells, dexterity, length, states, nu))
+
+    def score(self, workspace: Workspace) -> Score:
+        """The fitness of a workspace that is not singular, and its two parts."""
+        counted = workspace.reached
+        dexterity = float(workspace.nu[workspace.regular].mean())
+        if self.task.index == "lci":
+            counted = workspace.dexterous(self.task.threshold)
+            dexterity = float(counted.sum() / workspace.reached.sum())
+        volume = float(counted.sum()) * workspace.cells.volume / len(workspace.cells.rpy)
+        share = volume / self.cube**3 if workspace.cells.volume > 0.0 else float(counted.mean())
+        dexterous, large = self.task.weights
+        return Score(dexterous * dexterity + large * share, dexterity, share)
+
+
+def task_of(mechanism: Mechanism) -> DesignTask:
+    """The mechanism's task.
+
+    Raises:
+        InvalidSetting: It has none.
+    """
+    if mechanism.task is None:
+        raise InvalidSetting(f"{mechanism.name} has no design settings: give it a task, or its file a [design] table")
+    return mechanism.task
+
+
+def _wrong_side(workspace: Workspace) -> float:
+    """Share of the poses that are singular, or on the side of a singularity where fewer are."""
+    counts = workspace.counts
+    positive, negative = counts.get(PoseState.POSITIVE, 0), counts.get(PoseState.NEGATIVE, 0)
+    return (min(positive, negative) + counts.get(PoseState.SINGULAR, 0)) / int(workspace.reached.sum())

@@ -1,0 +1,226 @@
+"""Where the joints of a general Stewart platform are, and which leg joins which two of them.
+
+Base joints B lie on a circle of radius rb about O, platform joints M on a circle of radius rm; both circles are planar,
+angles count from the x axis. Several legs may share a joint: the connection matrix says which joints have a leg between
+them, and that matrix is all that distinguishes the types 3x3 (three joints a side) to 6x6.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from math import degrees, isfinite, tau
+from numbers import Real
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pin_metaik.errors import InvalidGeometry
+from pin_metaik.optimize.space import Array
+
+FEWEST_LEGS, MOST_LEGS = 3, 6
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """A general Stewart platform: two circles of joints and the legs between them. Lengths in m, angles in rad.
+
+    Attributes:
+        base_radius: rb, of the fixed circle.
+        platform_radius: rm, of the moving circle.
+        base_angles: Of the joints B1, B2 ... on the fixed circle: ascending, within one turn.
+        platform_angles: Of the joints M1, M2 ... on the moving circle: ascending, within one turn.
+        legs: The (base joint, platform joint) of each of the 3 to 6 legs, counted from 0.
+        reference: The point P that poses place, in the frame of the moving circle; its centre if not given.
+
+    Raises:
+        InvalidGeometry: A radius that is not above zero, angles out of order, a leg to a joint that does not exist, a
+            joint without a leg, two legs between the same joints, or not 3 to 6 legs.
+    """
+
+    base_radius: float
+    platform_radius: float
+    base_angles: tuple[float, ...]
+    platform_angles: tuple[float, ...]
+    legs: tuple[tuple[int, int], ...]
+    reference: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        for name in ("base_radius", "platform_radius"):
+            object.__setattr__(self, name, _radius(name, getattr(self, name)))
+        for name, side in (("base_angles", "B"), ("platform_angles", "M")):
+            object.__setattr__(self, name, _angles(name, side, getattr(self, name)))
+        legs = _legs(self.legs, len(self.base_angles), len(self.platform_angles))
+        object.__setattr__(self, "legs", legs)
+        reference = _numbers("reference", self.reference)
+        if len(reference) != 3:
+            raise InvalidGeometry(f"reference is three lengths x, y, z, got {self.reference!r}")
+        object.__setattr__(self, "reference", reference)
+
+    @property
+    def n(self) -> int:
+        """Number of legs."""
+        return len(self.legs)
+
+    @property
+    def type(self) -> str:
+        """Joints a side, base first, as the literature names it: ``"6x3"``."""
+        return f"{len(self.base_angles)}x{len(self.platform_angles)}"
+
+    @property
+    def connection(self) -> NDArray[np.int64]:
+        """The connection matrix (joints of the base, joints of the platform): 1 where a leg joins the two."""
+        matrix = np.zeros((len(self.base_angles), len(self.platform_angles)), dtype=np.int64)
+        matrix[tuple(np.transpose(self.legs))] = 1
+        return matrix
+
+    @cached_property
+    def base_joints(self) -> Array:
+        """Positions of B1, B2 ... in the base frame, m (joints, 3)."""
+        return _frozen(on_circle(self.base_radius, self.base_angles))
+
+    @cached_property
+    def platform_joints(self) -> Array:
+        """Positions of M1, M2 ... from P in the platform frame, m (joints, 3)."""
+        return _frozen(on_circle(self.platform_radius, self.platform_angles) - np.array(self.reference))
+
+    @cached_property
+    def b(self) -> Array:
+        """Base end b_i of each leg in the base frame, m (n, 3)."""
+        return _frozen(self.base_joints[[base for base, _ in self.legs]])
+
+    @cached_property
+    def m(self) -> Array:
+        """Platform end m_i of each leg in the platform frame, m (n, 3)."""
+        return _frozen(self.platform_joints[[platform for _, platform in self.legs]])
+
+    @cached_property
+    def pairs(self) -> NDArray[np.int64]:
+        """Pairs of legs that share no joint, and could therefore touch (p, 2)."""
+        apart = [
+            (i, j) for (i, (bi, mi)), (j, (bj, mj)) in combinations(enumerate(self.legs), 2) if bi != bj and mi != mj
+        ]
+        pairs = np.array(apart, dtype=np.int64).reshape(-1, 2)
+        pairs.flags.writeable = False
+        return pairs
+
+    @cached_property
+    def arrays(self) -> tuple[Array, Array, NDArray[np.int64]]:
+        """b, m and pairs as the compiled loops take them, which want them writable; leave them as they are."""
+        return self.b.copy(), self.m.copy(), self.pairs.copy()
+
+    @property
+    def joint_gap(self) -> float:
+        """Least distance between the centres of neighbouring joints on either circle, m."""
+        gaps = (
+            chords(self.base_radius, np.array(self.base_angles)),
+            chords(self.platform_radius, np.array(self.platform_angles)),
+        )
+        return float(min(gap.min() for gap in gaps))
+
+    def __str__(self) -> str:
+        legs = ", ".join(f"B{base + 1}-M{platform + 1}" for base, platform in self.legs)
+        return f"{self.type}, {self.n} legs: {legs}"
+
+
+def on_circle(radius: float, angles: ArrayLike) -> Array:
+    """Points (k, 3) of a circle of this radius in the plane z = 0, at angles (k,) in rad."""
+    angles = np.asarray(angles, dtype=float)
+    return radius * np.column_stack((np.cos(angles), np.sin(angles), np.zeros_like(angles)))
+
+
+def chords(radius: float, angles: Array) -> Array:
+    """Distance (k,) from each of the joints at ascending angles (k,) to the next, round the circle.
+
+    Negative where the angles are out of order: by how much they are.
+    """
+    steps = np.diff(angles, append=angles[:1] + tau)
+    return np.asarray(2.0 * radius * np.sin(np.clip(0.5 * steps, -np.pi / 2, np.pi)))
+
+
+def legs_of(connection: ArrayLike) -> tuple[tuple[int, int], ...]:
+    """The legs of a connection matrix (joints of the base, joints of the platform) of zeros and ones, row by row.
+
+    Raises:
+        InvalidGeometry: Not a matrix of zeros and ones.
+    """
+    try:
+        matrix = np.asarray(connection, dtype=float)
+    except (TypeError, ValueError):
+        matrix = np.empty(0)
+    if matrix.ndim != 2 or not np.isin(matrix, (0.0, 1.0)).all():
+        raise InvalidGeometry(
+            f"a connection matrix has a row of zeros and ones for every base joint, got {connection!r}"
+        )
+    return tuple((int(base), int(platform)) for base, platform in np.argwhere(matrix == 1.0))
+
+
+def _frozen(array: Array) -> Array:
+    array = np.ascontiguousarray(array)
+    array.flags.writeable = False
+    return array
+
+
+def _number(name: str, value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, Real) or not isfinite(value):
+        raise InvalidGeometry(f"{name} is a finite number, got {value!r}")
+    return float(value)
+
+
+def _numbers(name: str, values: Any) -> tuple[float, ...]:
+    if isinstance(values, str) or not isinstance(values, (Sequence, np.ndarray)):
+        raise InvalidGeometry(f"{name} is a list of numbers, got {values!r}")
+    return tuple(_number(name, value) for value in values)
+
+
+def _radius(name: str, value: object) -> float:
+    radius = _number(name, value)
+    if not radius > 0.0:
+        raise InvalidGeometry(f"{name} is above zero, got {radius:g} m")
+    return radius
+
+
+def _angles(name: str, side: str, values: Any) -> tuple[float, ...]:
+    angles = _numbers(name, values)
+    if len(angles) < 2:
+        raise InvalidGeometry(f"{name} is one angle for each of at least two joints, got {values!r}")
+    for k, (before, angle) in enumerate(zip(angles, angles[1:], strict=False), start=2):
+        if angle <= before:
+            later = angle + tau * ((before - angle) // tau + 1)
+            hint = f"; write {degrees(later):.6g} deg" if later < angles[0] + tau else ""
+            raise InvalidGeometry(
+                f"{name} ascend within one turn, but {side}{k} at {degrees(angle):.6g} deg does not come after "
+                f"{side}{k - 1} at {degrees(before):.6g} deg{hint}"
+            )
+    if angles[-1] >= angles[0] + tau:
+        raise InvalidGeometry(
+            f"{name} ascend within one turn, but {side}{len(angles)} at {degrees(angles[-1]):.6g} deg is a turn or "
+            f"more after {side}1 at {degrees(angles[0]):.6g} deg"
+        )
+    return angles
+
+
+def _legs(legs: Any, bases: int, platforms: int) -> tuple[tuple[int, int], ...]:
+    try:
+        ends = [(int(base), int(platform)) for base, platform in legs]
+    except (TypeError, ValueError):
+        raise InvalidGeometry(f"legs are pairs (base joint, platform joint) counted from 0, got {legs!r}") from None
+    if not FEWEST_LEGS <= len(ends) <= MOST_LEGS:
+        raise InvalidGeometry(f"a platform has {FEWEST_LEGS} to {MOST_LEGS} legs, got {len(ends)}")
+    for leg, (base, platform) in enumerate(ends, start=1):
+        for side, joint, count in (("B", base, bases), ("M", platform, platforms)):
+            if not 0 <= joint < count:
+                raise InvalidGeometry(
+                    f"leg {leg} is joined to {side}{joint + 1}, which does not exist: "
+                    f"there are {side}1 to {side}{count}"
+                )
+    for (i, ends_i), (j, ends_j) in combinations(enumerate(ends, start=1), 2):
+        if ends_i == ends_j:
+            raise InvalidGeometry(f"legs {i} and {j} both join B{ends_i[0] + 1} and M{ends_i[1] + 1}")
+    for column, side, count in ((0, "B", bases), (1, "M", platforms)):
+        for joint in sorted(set(range(count)) - {leg[column] for leg in ends}):
+            raise InvalidGeometry(f"joint {side}{joint + 1} has no leg; leave it out or join a leg to it")
+    return tuple(ends)

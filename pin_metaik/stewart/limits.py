@@ -1,0 +1,129 @@
+"""What the legs allow: their lengths, the angles of their joints, and the distance they keep from each other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from math import cos, isfinite, pi
+from numbers import Real
+
+import numpy as np
+
+from pin_metaik.errors import InvalidGeometry
+from pin_metaik.optimize.space import Array
+from pin_metaik.stewart.geometry import Geometry
+
+
+class PoseState(IntEnum):
+    """What a pose is to a platform: reached, or the first limit that forbids it, in the order they are looked at."""
+
+    UNSEEN = 0
+    """Not looked at: the survey was interrupted."""
+    POSITIVE = 1
+    """Reached, det J > 0; with fewer than six legs, just reached."""
+    NEGATIVE = 2
+    """Reached, det J < 0. Between poses of either sign lies a singularity; which sign it is means nothing."""
+    SINGULAR = 3
+    """Reached, but det J = 0: the legs do not hold the platform."""
+    TOO_SHORT = 4
+    TOO_LONG = 5
+    BASE_ANGLE = 6
+    PLATFORM_ANGLE = 7
+    TOO_CLOSE = 8
+
+    @property
+    def reached(self) -> bool:
+        """Whether the limits allow the pose."""
+        return PoseState.POSITIVE <= self <= PoseState.SINGULAR
+
+    @property
+    def words(self) -> str:
+        """In words, after "a pose that is"."""
+        return _WORDS[self]
+
+
+_WORDS = {
+    PoseState.UNSEEN: "not looked at",
+    PoseState.POSITIVE: "reached with det J > 0",
+    PoseState.NEGATIVE: "reached with det J < 0",
+    PoseState.SINGULAR: "singular",
+    PoseState.TOO_SHORT: "too near for a leg",
+    PoseState.TOO_LONG: "too far for a leg",
+    PoseState.BASE_ANGLE: "beyond the angle of a base joint",
+    PoseState.PLATFORM_ANGLE: "beyond the angle of a platform joint",
+    PoseState.TOO_CLOSE: "where two legs come too close",
+}
+
+
+@dataclass(frozen=True)
+class LegLimits:
+    """Limits of every leg of a platform. Lengths in m, angles in rad.
+
+    Attributes:
+        shortest: Length of a leg that is retracted.
+        longest: Length of a leg that is extended.
+        base_angle: Largest angle between a leg and the axis of its base joint, 0 to pi; pi is no limit.
+        platform_angle: The same at its platform joint.
+        distance: Least distance between the axes of two legs (their diameter and what clearance they need). Legs that
+            share a joint are not compared.
+        home: Position of P, with the platform level, at which the axes of all joints point along their legs. Without
+            it they stand square on their plates, towards the other plate.
+
+    Raises:
+        InvalidGeometry: A shortest length that is not above zero or above the longest, or a limit out of its range.
+    """
+
+    shortest: float
+    longest: float
+    base_angle: float = pi
+    platform_angle: float = pi
+    distance: float = 0.0
+    home: tuple[float, float, float] | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("shortest", "longest", "base_angle", "platform_angle", "distance"):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, Real) or not isfinite(value):
+                raise InvalidGeometry(f"{name} of the legs is a finite number, got {value!r}")
+            object.__setattr__(self, name, float(value))
+        if not self.shortest > 0.0:
+            raise InvalidGeometry(f"the shortest leg is longer than zero, got {self.shortest:g} m")
+        if self.shortest > self.longest:
+            raise InvalidGeometry(
+                f"the shortest leg, {self.shortest:g} m, is longer than the longest, {self.longest:g} m"
+            )
+        for name in ("base_angle", "platform_angle"):
+            if not 0.0 < getattr(self, name) <= pi:
+                raise InvalidGeometry(f"{name} lies above 0 and up to pi rad, got {getattr(self, name):g}")
+        if self.distance < 0.0:
+            raise InvalidGeometry(f"the distance between legs is not below zero, got {self.distance:g} m")
+        if self.home is not None:
+            home = np.asarray(self.home, dtype=float)
+            if home.shape != (3,) or not np.isfinite(home).all():
+                raise InvalidGeometry(f"home is the position x, y, z of P, got {self.home!r}")
+            object.__setattr__(self, "home", tuple(home.tolist()))
+
+    @property
+    def stroke(self) -> float:
+        """How far a leg extends, m."""
+        return self.longest - self.shortest
+
+    @property
+    def array(self) -> Array:
+        """The limits (5,) as the compiled loops take them."""
+        angles = [cos(angle) if angle < pi else -1.0 for angle in (self.base_angle, self.platform_angle)]
+        return np.array([self.shortest, self.longest, *angles, self.distance])
+
+    def sockets(self, geometry: Geometry) -> Array:
+        """Unit axes (2, n, 3) of the base joints (base frame) and of the platform joints (platform frame).
+
+        Raises:
+            InvalidGeometry: A leg has no length at ``home``.
+        """
+        if self.home is None:
+            return np.array([[[0.0, 0.0, 1.0]], [[0.0, 0.0, -1.0]]]) * np.ones((2, geometry.n, 1))
+        v = np.array(self.home) + geometry.m - geometry.b
+        d = np.linalg.norm(v, axis=1, keepdims=True)
+        for leg in np.flatnonzero(d[:, 0] == 0.0):
+            raise InvalidGeometry(f"leg {leg + 1} has no length at home, so no direction for its joints' axes")
+        return np.array([v / d, -v / d])

@@ -1,0 +1,22 @@
+"""Loading the compiled loops late, so that ``import pin_metaik.stewart`` stays quick."""
+
+from __future__ import annotations
+
+from functools import cache
+from types import ModuleType
+
+
+@cache
+def load_kernels() -> ModuleType:
+    """The loops over poses; each is compiled, or read from numba's cache, when it is first called."""
+    from pin_metaik.stewart import kernels
+
+    return kernels
+
+
+@cache
+def load_newton() -> ModuleType:
+    """The loop of forward kinematics, likewise."""
+    from pin_metaik.stewart import newton
+
+    return newton

@@ -1,0 +1,196 @@
+"""Pictures: a mechanism at a pose, its workspace coloured by dexterity, and the history of a design."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pin_metaik.errors import MissingExtra
+from pin_metaik.optimize.space import Array
+from pin_metaik.stewart.design import Designed
+from pin_metaik.stewart.geometry import on_circle
+from pin_metaik.stewart.inverse import leg_vectors
+from pin_metaik.stewart.mechanism import Mechanism
+from pin_metaik.stewart.poses import PoseLike, as_poses, pose_at
+from pin_metaik.stewart.workspace import Workspace
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+STEEL, PLATE, ROD = "#4a4f57", "#e07b1a", "#2f6fb0"
+TAG = {"boxstyle": "circle,pad=0.15", "facecolor": "white", "edgecolor": STEEL, "linewidth": 0.6}
+VIEW = {"elev": 18.0, "azim": -60.0}
+MOST_CELLS = 60  # of a workspace along each axis; more than that nobody sees
+LIGHT = {(0, 1): 0.88, (0, -1): 0.8, (1, 1): 0.72, (1, -1): 0.94, (2, 1): 1.0, (2, -1): 0.62}
+"""How bright the faces of cells are, by their axis and side: lit from above and in front."""
+
+
+def draw(mechanism: Mechanism, workspace: Workspace | None = None, pose: PoseLike | None = None) -> Figure:
+    """A picture of a mechanism, and beside it of its workspace; see ``draw_into``.
+
+    Raises:
+        InvalidTarget: Not a pose.
+        MissingExtra: matplotlib is not installed.
+    """
+    figure = _figure((11.0, 4.8) if workspace is not None else (6.8, 5.6))
+    draw_into(figure, mechanism, workspace, pose)
+    return figure
+
+
+def draw_into(
+    figure: Figure, mechanism: Mechanism, workspace: Workspace | None = None, pose: PoseLike | None = None
+) -> None:
+    """Draw into an empty figure.
+
+    Args:
+        figure: Where to draw.
+        mechanism: What to draw.
+        workspace: Its workspace, if that is to be drawn too: its cells, coloured by nu.
+        pose: Where the platform is; default: in the middle of the workspace, or level at half stroke.
+
+    Raises:
+        InvalidTarget: Not a pose.
+    """
+    unit = mechanism.unit
+    scale = 1.0 / mechanism.metres
+    T = as_poses(_middle(mechanism, workspace) if pose is None else pose)[0]
+    axes = figure.add_subplot(1, 2 if workspace is not None else 1, 1, projection="3d")
+    _mechanism(axes, mechanism, T, scale)
+    axes.set_title(f"{mechanism.name} ({mechanism.geometry.type})", fontsize=11)
+    _dress(axes, unit)
+    if workspace is not None:
+        axes = figure.add_subplot(1, 2, 2, projection="3d")
+        _body(figure, axes, workspace, scale)
+        gdi = "no GDI: singular" if workspace.gdi is None else f"GDI {workspace.gdi:.3f}"
+        axes.set_title(f"workspace: {1e6 * workspace.volume:.4g} cm³, {gdi}", fontsize=11)
+        _dress(axes, unit)
+
+
+def draw_history(designed: Designed) -> Figure:
+    """Best fitness over designs looked at.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+    """
+    figure = _figure((6.0, 3.6))
+    axes = figure.add_subplot()
+    history = designed.history
+    feasible = history[:, 1] >= 0.0
+    axes.plot(*history[feasible].T, color=ROD)
+    axes.set_xlabel("designs looked at")
+    axes.set_ylabel("best fitness")
+    axes.set_title(designed.mechanism.name, fontsize=11)
+    axes.grid(alpha=0.3)
+    return figure
+
+
+def save_picture(figure: Figure, path: str | Path) -> Path:
+    """Write a figure to a file; the ending says the format (.png, .svg, .pdf)."""
+    path = Path(path)
+    figure.savefig(path, dpi=130)
+    return path
+
+
+def _figure(size: tuple[float, float]) -> Figure:
+    try:
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise MissingExtra("a picture", "plots") from None
+    return Figure(figsize=size, layout="constrained")
+
+
+def _middle(mechanism: Mechanism, workspace: Workspace | None) -> Array:
+    if workspace is not None:
+        return pose_at(np.median(workspace.positions, axis=0))
+    limits, offset = mechanism.limits, mechanism.geometry.m - mechanism.geometry.b
+    square = (0.5 * (limits.shortest + limits.longest)) ** 2 - (offset[:, :2] ** 2).sum(axis=1).mean()
+    return pose_at((0.0, 0.0, np.sqrt(max(square, limits.shortest**2 / 4)) - offset[:, 2].mean()))
+
+
+def _mechanism(axes: Any, mechanism: Mechanism, T: Array, scale: float) -> None:
+    """Plates as polygons of their joints on their circles, legs as cylinder and rod, joints as dots."""
+    geometry = mechanism.geometry
+    R, P = T[:3, :3], T[:3, 3]
+    round_about = np.linspace(0.0, 2 * np.pi, 73)
+    moving = on_circle(geometry.platform_radius, round_about) - np.array(geometry.reference)
+    axes.plot(*(scale * on_circle(geometry.base_radius, round_about)).T, color=STEEL, lw=1, alpha=0.5)
+    axes.plot(*(scale * (P + moving @ R.T)).T, color=PLATE, lw=1, alpha=0.6)
+    platform_joints = P + geometry.platform_joints @ R.T
+    _plate(axes, scale * geometry.base_joints, STEEL)
+    _plate(axes, scale * platform_joints, PLATE)
+    for i, (b, v) in enumerate(zip(geometry.b, leg_vectors(geometry, T)[0], strict=True), start=1):
+        share = min(1.0, 0.9 * mechanism.limits.shortest / max(float(np.linalg.norm(v)), 1e-12))
+        axes.plot(*(scale * np.array([b, b + share * v])).T, color=STEEL, lw=4, solid_capstyle="round")
+        axes.plot(*(scale * np.array([b + share * v, b + v])).T, color=ROD, lw=2.2, solid_capstyle="round")
+        axes.text(
+            *(scale * (b + 0.45 * v)), f"{i}", fontsize=8, color=STEEL, ha="center", va="center", bbox=TAG, zorder=20
+        )
+    aside = 0.09 * (geometry.base_radius + geometry.platform_radius)
+    for joints, name, colour in ((geometry.base_joints, "B", STEEL), (platform_joints, "M", PLATE)):
+        axes.scatter(*(scale * joints).T, color=colour, s=26, depthshade=False)
+        for k, joint in enumerate(joints, start=1):
+            outward = joint - joints.mean(axis=0)
+            place = joint + aside * outward / np.linalg.norm(outward) + [0.0, 0.0, 0.6 * aside if name == "M" else 0.0]
+            axes.text(*(scale * place), f"{name}{k}", fontsize=9, color=colour, ha="center", fontweight="bold")
+
+
+def _plate(axes: Any, corners: Array, colour: str) -> None:
+    axes.add_collection3d(_polygons([corners], facecolor=colour, alpha=0.22, edgecolor=colour))
+
+
+def _body(figure: Figure, axes: Any, workspace: Workspace, scale: float) -> None:
+    """The workspace as a body of cells: their outer faces, coloured by nu, the lower the darker lit."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    faces, light, nu = _faces(workspace)
+    colour = ScalarMappable(Normalize(nu.min(), nu.max()), "viridis")
+    rgba = colour.to_rgba(nu)
+    rgba[:, :3] *= light[:, None]
+    axes.add_collection3d(_polygons(scale * faces, facecolors=rgba, edgecolors=rgba, linewidths=0.2))
+    corners = scale * faces.reshape(-1, 3)
+    for name, low, high in zip("xyz", corners.min(axis=0), corners.max(axis=0), strict=True):
+        getattr(axes, f"set_{name}lim")(low, high)
+    bar = figure.colorbar(colour, ax=axes, shrink=0.62, pad=0.12)
+    bar.set_label("nu, mean over the orientations reached" if len(workspace.cells.rpy) > 1 else "nu")
+
+
+def _polygons(corners: Any, **style: Any) -> Any:
+    """Polygons in space for ``add_collection3d``."""
+    return import_module("mpl_toolkits.mplot3d.art3d").Poly3DCollection(corners, **style)
+
+
+def _faces(workspace: Workspace) -> tuple[Array, Array, Array]:
+    """Outer faces (f, 4, 3) of the cells reached, how bright each is (f,), and the cell's nu (f,)."""
+    step = [-(-count // MOST_CELLS) for count in workspace.states.shape[:3]]  # of a fine grid, every so many cells
+    coarse = tuple(slice(s // 2, None, s) for s in step)
+    reached = workspace.reached[coarse]
+    nu = workspace.nu[coarse].sum(axis=-1) / np.maximum(reached.sum(axis=-1), 1)
+    body = np.pad(reached.any(axis=-1), 1)
+    cells = workspace.cells
+    centres = [axis[part] for axis, part in zip((cells.xs, cells.ys, cells.zs), coarse, strict=True)]
+    thin = 0.02 * workspace.geometry.base_radius  # of a layer one cell thick
+    half = np.array([0.5 * (axis[1] - axis[0]) if len(axis) > 1 and axis[1] > axis[0] else thin for axis in centres])
+    faces, light, values = [], [], []
+    for (axis, side), bright in LIGHT.items():
+        index = np.argwhere(body & ~np.roll(body, -side, axis)) - 1
+        middle = np.column_stack([centre[i] for centre, i in zip(centres, index.T, strict=True)])
+        u, v = ((axis + k) % 3 for k in (1, 2))
+        for_corners = np.zeros((4, 3))
+        for_corners[:, axis] = side
+        for_corners[:, u], for_corners[:, v] = (-1, 1, 1, -1), (-1, -1, 1, 1)
+        faces.append(middle[:, None] + half * for_corners)
+        light.append(np.full(len(index), bright))
+        values.append(nu[tuple(index.T)])
+    return np.concatenate(faces), np.concatenate(light), np.concatenate(values)
+
+
+def _dress(axes: Any, unit: str) -> None:
+    for name in "xyz":
+        getattr(axes, f"set_{name}label")(f"{name} ({unit})", fontsize=9)
+    axes.tick_params(labelsize=8)
+    axes.set_box_aspect([np.ptp(getattr(axes, f"get_{name}lim")()) for name in "xyz"])
+    axes.view_init(**VIEW)

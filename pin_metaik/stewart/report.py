@@ -1,0 +1,118 @@
+"""What there is to say about a mechanism, as labelled lines in its own units and as plain values."""
+
+from __future__ import annotations
+
+from math import degrees, pi
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pin_metaik.stewart.conditioning import conditioning
+from pin_metaik.stewart.design import Designed
+from pin_metaik.stewart.interference import leg_distances
+from pin_metaik.stewart.inverse import leg_lengths
+from pin_metaik.stewart.limits import PoseState
+from pin_metaik.stewart.mechanism import Mechanism
+from pin_metaik.stewart.poses import PoseLike, as_poses
+from pin_metaik.stewart.singularity import singularities
+from pin_metaik.stewart.trajectory import judge_poses
+from pin_metaik.stewart.workspace import Workspace
+
+Lines: TypeAlias = list[tuple[str, str]]
+
+
+def in_unit(mechanism: Mechanism, lengths: ArrayLike) -> str:
+    """Lengths given in m, in the mechanism's unit."""
+    return f"{', '.join(f'{value / mechanism.metres:.6g}' for value in np.ravel(lengths))} {mechanism.unit}"
+
+
+def describe(mechanism: Mechanism) -> Lines:
+    """Its dimensions and limits."""
+    geometry, limits = mechanism.geometry, mechanism.limits
+    lines = [("type", str(geometry))]
+    for side, radius, angles in (
+        ("base", geometry.base_radius, geometry.base_angles),
+        ("platform", geometry.platform_radius, geometry.platform_angles),
+    ):
+        shown = ", ".join(f"{degrees(angle):.6g}" for angle in angles)
+        lines.append((side, f"radius {in_unit(mechanism, radius)}, joints at {shown} deg"))
+    if any(geometry.reference):
+        lines.append(("reference", f"{in_unit(mechanism, geometry.reference)} from the centre of the platform"))
+    lines.append(("joint gap", in_unit(mechanism, geometry.joint_gap)))
+    lines.append(("legs", in_unit(mechanism, (limits.shortest, limits.longest))))
+    for name, angle in (("base joints", limits.base_angle), ("platform joints", limits.platform_angle)):
+        if angle < pi:
+            lines.append((name, f"up to {degrees(angle):.6g} deg"))
+    if limits.distance > 0.0:
+        lines.append(("legs apart", f"at least {in_unit(mechanism, limits.distance)}"))
+    return lines
+
+
+def assess(mechanism: Mechanism, workspace: Workspace) -> Lines:
+    """Its workspace: volume, dexterity, singularities, and what limits it."""
+    found = singularities(workspace)
+    lines = [("verdict", str(workspace.verdict))]
+    if not workspace.complete:
+        lines.append(("PARTIAL", "interrupted: what follows is about the poses seen until then"))
+    lines.append(("volume", f"{1e6 * workspace.volume:.5g} cm3"))
+    if len(workspace.cells.rpy) > 1:
+        lines.append(("in every orientation", f"{1e6 * workspace.volume_of_all:.5g} cm3"))
+    gdi = "none: every pose reached is singular" if workspace.gdi is None else f"{workspace.gdi:.4f}"
+    norm = f"{mechanism.dexterity.norm} norm, L = {in_unit(mechanism, workspace.length)}"
+    lines.append(("GDI", f"{gdi} ({norm})"))
+    lines.append(("lowest nu", f"{found.nu:.4g} at {in_unit(mechanism, found.nearest[:3, 3])}"))
+    if len(found.poses) or len(found.crossings):
+        lines.append(("singular poses", f"{len(found.poses)}, left out of the GDI"))
+        lines.append(("det J changes sign", f"between {len(found.crossings)} pairs of neighbouring poses"))
+    total = workspace.states.size
+    for state, count in workspace.counts.items():
+        lines.append(("poses", f"{100 * count / total:6.2f} %  {state.words}"))
+    return lines
+
+
+def at_pose(mechanism: Mechanism, pose: PoseLike) -> Lines:
+    """The legs at one pose."""
+    T = as_poses(pose)
+    state = PoseState(int(judge_poses(mechanism.geometry, mechanism.limits, T)[0]))
+    lines = [
+        ("leg lengths", in_unit(mechanism, leg_lengths(mechanism.geometry, T))),
+        ("pose is", state.words),
+        ("nu", f"{conditioning(mechanism.geometry, T[0], mechanism.dexterity):.6f}"),
+    ]
+    distances = leg_distances(mechanism.geometry, T)[0]
+    if len(distances):
+        i, j = mechanism.geometry.pairs[distances.argmin()] + 1
+        lines.append(("nearest legs", f"{i} and {j}, {in_unit(mechanism, distances.min())} apart"))
+    return lines
+
+
+def outcome(designed: Designed) -> Lines:
+    """What a design ended with."""
+    lines = [("ended", designed.search.status.value), ("designs looked at", str(designed.search.evaluations))]
+    lines.append(("time", f"{designed.search.seconds:.3g} s"))
+    if designed.score is None:
+        return [*lines, ("design", "none found with room for its joints and a workspace without singularities")]
+    score = designed.score
+    parts = f"dexterity {score.dexterity:.4f}, workspace {score.workspace:.4f}"
+    return [*lines, ("fitness", f"{score.fitness:.4f}: {parts}")]
+
+
+def values(mechanism: Mechanism, workspace: Workspace) -> dict[str, object]:
+    """A workspace as plain values in m and rad, for JSON; ``gdi`` is null for a singular mechanism."""
+    found = singularities(workspace)
+    return {
+        "name": mechanism.name,
+        "type": mechanism.geometry.type,
+        "verdict": str(workspace.verdict),
+        "complete": workspace.complete,
+        "volume": workspace.volume,
+        "volume_in_every_orientation": workspace.volume_of_all,
+        "gdi": workspace.gdi,
+        "norm": mechanism.dexterity.norm,
+        "characteristic_length": workspace.length,
+        "lowest_nu": found.nu,
+        "singular_poses": len(found.poses),
+        "sign_changes": len(found.crossings),
+        "poses": {state.name.lower(): count for state, count in workspace.counts.items()},
+    }

@@ -1,0 +1,165 @@
+"""The workspace of a platform on a grid, and its indices: volume, GDI, LCI."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.errors import InvalidGeometry
+from pin_metaik.optimize.space import Array
+from pin_metaik.stewart.cells import Cells
+from pin_metaik.stewart.conditioning import Dexterity
+from pin_metaik.stewart.geometry import Geometry
+from pin_metaik.stewart.limits import LegLimits, PoseState
+
+
+class EmptyWorkspace(InvalidGeometry):
+    """No pose of the grid is within the limits.
+
+    Attributes:
+        reasons: How many poses each limit forbids.
+    """
+
+    def __init__(self, reasons: dict[PoseState, int]) -> None:
+        self.reasons = reasons
+        total = sum(reasons.values())
+        why = ", ".join(f"{count} are {state.words}" for state, count in reasons.items())
+        hint = "move the grid or widen the limits"
+        super().__init__(f"the workspace is empty: of {total} poses of the grid {why}; {hint}")
+
+
+class Verdict(StrEnum):
+    """Whether a mechanism holds its platform throughout its workspace."""
+
+    REGULAR = "REGULAR"
+    """No pose reached is singular, and det J has one sign."""
+    CROSSES_SINGULARITY = "CROSSES_SINGULARITY"
+    """Some poses reached are singular, or det J changes sign between them."""
+    SINGULAR = "SINGULAR"
+    """Every pose reached is singular: the mechanism does not work."""
+
+
+@dataclass(frozen=True, eq=False)
+class Workspace:
+    """A grid of poses, each judged.
+
+    Attributes:
+        geometry: The platform.
+        limits: What its legs allow.
+        cells: The grid.
+        dexterity: How nu was measured ...
+        length: ... and the characteristic length in m that this meant.
+        states: A ``PoseState`` for every pose (nx, ny, nz, o).
+        nu: Local conditioning index (nx, ny, nz, o), 0 where not reached or singular.
+    """
+
+    geometry: Geometry
+    limits: LegLimits
+    cells: Cells
+    dexterity: Dexterity
+    length: float
+    states: NDArray[np.int8]
+    nu: Array
+
+    @property
+    def complete(self) -> bool:
+        """Whether every pose was looked at; if not, the survey was interrupted."""
+        return not (self.states == PoseState.UNSEEN).any()
+
+    @cached_property
+    def reached(self) -> NDArray[np.bool_]:
+        """Which poses are within the limits (nx, ny, nz, o)."""
+        reached: NDArray[np.bool_] = (self.states >= PoseState.POSITIVE) & (self.states <= PoseState.SINGULAR)
+        return reached
+
+    @cached_property
+    def regular(self) -> NDArray[np.bool_]:
+        """Which poses are reached and not singular (nx, ny, nz, o)."""
+        regular: NDArray[np.bool_] = self.reached & (self.states != PoseState.SINGULAR)
+        return regular
+
+    @property
+    def counts(self) -> dict[PoseState, int]:
+        """How many poses have each state; states that do not occur are left out."""
+        counts = np.bincount(self.states.ravel(), minlength=len(PoseState))
+        return {state: int(counts[state]) for state in PoseState if counts[state]}
+
+    @property
+    def verdict(self) -> Verdict:
+        """Whether the mechanism holds its platform throughout."""
+        counts = self.counts
+        sides = (PoseState.POSITIVE in counts) + (PoseState.NEGATIVE in counts)
+        if sides == 0:
+            return Verdict.SINGULAR
+        return Verdict.CROSSES_SINGULARITY if sides == 2 or PoseState.SINGULAR in counts else Verdict.REGULAR
+
+    @property
+    def volume(self) -> float:
+        """Volume of the positions reached in at least one of the orientations, m^3."""
+        return float(self.reached.any(axis=-1).sum() * self.cells.volume)
+
+    @property
+    def volume_of_all(self) -> float:
+        """Volume of the positions reached in every one of the orientations, m^3."""
+        return float(self.reached.all(axis=-1).sum() * self.cells.volume)
+
+    @property
+    def orientations(self) -> Array:
+        """Share of the orientations reached at each position (nx, ny, nz)."""
+        share: Array = self.reached.mean(axis=-1)
+        return share
+
+    @property
+    def gdi(self) -> float | None:
+        """Global dexterity index, Eq. 10: mean nu over the poses reached that are not singular.
+
+        None when all are singular: such a mechanism has no dexterity to speak of. See ``verdict`` and ``counts`` for
+        how many were left out.
+        """
+        return float(self.nu[self.regular].mean()) if self.regular.any() else None
+
+    def dexterous(self, threshold: float) -> NDArray[np.bool_]:
+        """Which poses have an LCI of at least the threshold (nx, ny, nz, o)."""
+        dexterous: NDArray[np.bool_] = self.regular & (self.nu >= threshold)
+        return dexterous
+
+    def dexterous_volume(self, threshold: float) -> float:
+        """Volume of the positions with an LCI of at least the threshold in every orientation, m^3."""
+        return float(self.dexterous(threshold).all(axis=-1).sum() * self.cells.volume)
+
+    @cached_property
+    def positions(self) -> Array:
+        """Positions reached in at least one orientation, m (r, 3)."""
+        return self.position_of(np.argwhere(self.reached.any(axis=-1)))
+
+    def position_of(self, index: NDArray[np.int64]) -> Array:
+        """Positions (r, 3) in m of cells (r, 3 or more) given by their indices."""
+        cells = self.cells
+        return np.column_stack((cells.xs[index[:, 0]], cells.ys[index[:, 1]], cells.zs[index[:, 2]]))
+
+    def poses_of(self, index: NDArray[np.int64]) -> Array:
+        """Poses (r, 4, 4) of the grid given by their indices (r, 4)."""
+        T = np.tile(np.eye(4), (len(index), 1, 1))
+        T[:, :3, 3] = self.position_of(index)
+        T[:, :3, :3] = self.cells.rotations[index[:, 3]]
+        return T
+
+    def poses(self, which: NDArray[np.bool_]) -> Array:
+        """Poses (r, 4, 4) of the grid where `which` (nx, ny, nz, o) is true."""
+        return self.poses_of(np.argwhere(which))
+
+    @property
+    def worst(self) -> Array:
+        """The pose (4, 4) reached with the lowest nu."""
+        place = np.where(self.reached, self.nu, np.inf).argmin()
+        worst: Array = self.poses_of(np.array([np.unravel_index(place, self.nu.shape)]))[0]
+        return worst
+
+    def __str__(self) -> str:
+        gdi = "no GDI" if self.gdi is None else f"GDI {self.gdi:.4f}"
+        share = f"{self.reached.sum()} of {self.reached.size} poses reached"
+        return f"{self.verdict}: {gdi}, {1e6 * self.volume:.4g} cm3, {share}"

@@ -1,0 +1,158 @@
+"""A mechanism as TOML text: what ``read_mechanism`` reads back as the same mechanism, to the last bit."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.optimize import ALGORITHMS, Metaheuristic, make
+from pin_metaik.stewart.grid import Grid
+from pin_metaik.stewart.limits import LegLimits
+from pin_metaik.stewart.mechanism import Mechanism
+from pin_metaik.stewart.numbers import ANGLES, LENGTHS, PURE, Unit
+from pin_metaik.stewart.ranges import Ranges, Span
+from pin_metaik.stewart.task import DesignTask
+
+DEG = ANGLES["deg"]
+
+
+def save_mechanism(mechanism: Mechanism, path: str | Path) -> Path:
+    """Write a mechanism to a ``.toml`` file; loading it gives the same mechanism, and saving that the same file.
+
+    Raises:
+        InvalidSetting: It is designed by a metaheuristic that has no name.
+    """
+    path = Path(path)
+    path.write_text(to_toml(mechanism), encoding="utf-8", newline="\n")
+    return path
+
+
+def to_toml(mechanism: Mechanism) -> str:
+    """TOML text of a mechanism: lengths in its unit, angles in degrees.
+
+    Raises:
+        InvalidSetting: It is designed by a metaheuristic that has no name.
+    """
+    mm = LENGTHS[mechanism.unit]
+    geometry = mechanism.geometry
+    base, platform = zip(*geometry.legs, strict=True)
+    lines = [f"name = {_text(mechanism.name)}", f"length = {_text(mm.name)}", f"angle = {_text(DEG.name)}"]
+    lines += [f"{key} = {_text(value)}" for key in ("description", "source") if (value := getattr(mechanism, key))]
+    lines += [
+        "",
+        "[base]",
+        f"radius = {mm.write(geometry.base_radius)}",
+        f"angles = {_list(geometry.base_angles, DEG)}",
+    ]
+    lines += ["", "[platform]", f"radius = {mm.write(geometry.platform_radius)}"]
+    lines += [f"angles = {_list(geometry.platform_angles, DEG)}"]
+    if any(geometry.reference):
+        lines += [f"reference = {_list(geometry.reference, mm)}"]
+    lines += [
+        "",
+        "[legs]",
+        f"base = {[joint + 1 for joint in base]}",
+        f"platform = {[joint + 1 for joint in platform]}",
+    ]
+    lines += _limits(mechanism.limits, mm)
+    lines += _section("workspace", _grid(mechanism.grid, mm))
+    length = mechanism.dexterity.length
+    shown = _text(length) if isinstance(length, str) else mm.write(length)
+    lines += ["", "[dexterity]", f"norm = {_text(mechanism.dexterity.norm)}", f"length = {shown}"]
+    if mechanism.task is not None:
+        lines += _task(mechanism.task, mm)
+    return "\n".join(lines) + "\n"
+
+
+def _limits(limits: LegLimits, mm: Unit) -> list[str]:
+    lines = [f"shortest = {mm.write(limits.shortest)}", f"longest = {mm.write(limits.longest)}"]
+    for key in ("base_angle", "platform_angle"):
+        if getattr(limits, key) < math.pi:
+            lines.append(f"{key} = {DEG.write(getattr(limits, key))}")
+    if limits.distance > 0.0:
+        lines.append(f"distance = {mm.write(limits.distance)}")
+    if limits.home is not None:
+        lines.append(f"home = {_list(limits.home, mm)}")
+    return lines
+
+
+def _grid(grid: Grid, mm: Unit) -> list[str]:
+    lines = [f"counts = {list(grid.counts)}"]
+    lines += [f"{key} = {_list(ends, mm)}" for key in ("x", "y", "z") if (ends := getattr(grid, key)) is not None]
+    if grid.steps != (1, 1, 1):
+        lines.append(f"steps = {list(grid.steps)}")
+    return lines + [
+        f"{key} = {_list(ends, DEG)}" for key in ("roll", "pitch", "yaw") if any(ends := getattr(grid, key))
+    ]
+
+
+def _task(task: DesignTask, mm: Unit) -> list[str]:
+    name, settings = _algorithm(make(task.algorithm))
+    lines = [f"algorithm = {_text(name)}", f"evaluations = {task.evaluations}", f"seed = {task.seed}"]
+    if task.from_current:
+        lines.append("from_current = true")
+    lines.append(f"index = {_text(task.index)}")
+    if task.index == "lci":
+        lines.append(f"threshold = {PURE.write(task.threshold)}")
+    lines.append(f"weights = {_list(task.weights, PURE)}")
+    if task.cube is not None:
+        lines.append(f"cube = {mm.write(task.cube)}")
+    lines.append(f"joint_gap = {mm.write(task.joint_gap)}")
+    lines = _section("design", lines) + _section("design.settings", settings)
+    lines += _section("design.ranges", _ranges(task.ranges, mm))
+    return lines + _section("design.workspace", _grid(task.grid, mm))
+
+
+def _ranges(ranges: Ranges, mm: Unit) -> list[str]:
+    lines = []
+    for name in (field.name for field in fields(ranges)):
+        value = getattr(ranges, name)
+        if value is None:
+            continue
+        angles = name.endswith("angles")
+        shown = f"[{', '.join(_span(span, DEG) for span in value)}]" if angles else _span(value, mm)
+        lines.append(f"{name} = {shown}")
+    return lines
+
+
+def _algorithm(algorithm: Metaheuristic) -> tuple[str, list[str]]:
+    """Its name, and a line for each of its settings that is not None."""
+    for name, kind in ALGORITHMS.items():
+        if type(algorithm) is kind and is_dataclass(algorithm):
+            values = {field.name: getattr(algorithm, field.name) for field in fields(algorithm)}
+            return name, [f"{key} = {_value(value)}" for key, value in values.items() if value is not None]
+    raise InvalidSetting(f"{algorithm!r} has no name to save; known: {', '.join(ALGORITHMS)}")
+
+
+def _section(name: str, lines: list[str]) -> list[str]:
+    return ["", f"[{name}]", *lines] if lines else []
+
+
+def _span(span: Span, unit: Unit) -> str:
+    return _list(span, unit) if isinstance(span, tuple) else unit.write(span)
+
+
+def _list(values: Iterable[float], unit: Unit) -> str:
+    return f"[{', '.join(unit.write(value) for value in values)}]"
+
+
+def _value(value: Any) -> str:
+    match value:
+        case bool():
+            return str(value).lower()
+        case str():
+            return _text(value)
+        case int():
+            return str(value)
+        case _:
+            return repr(float(value))
+
+
+def _text(value: str) -> str:
+    """A TOML string; JSON's escapes are TOML's."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
