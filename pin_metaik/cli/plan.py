@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -127,8 +128,10 @@ def _status(line: Any, shortest: PathPlan) -> Any:
 
 def _motion(plan: PathPlan, robot: SynchroDrive, radius: float, method: str, rng: int) -> TrajectoryPlan:
     from pin_metaik import mobile
+    from pin_metaik.learn import OutsideTraining
 
-    with _progress("trajectory") as tick:
+    with _progress("trajectory") as tick, warnings.catch_warnings():
+        warnings.simplefilter("ignore", OutsideTraining)  # the plan's notes say it
         return mobile.plan_trajectory(
             plan.path,
             robot,

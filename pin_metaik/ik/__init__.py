@@ -6,7 +6,8 @@ from pin_metaik.ik.problem import IKProblem, Verdict
 from pin_metaik.ik.refine import DLS, REFINERS, Refinement, Refiner
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solutions import IKSolutions, solve_ik_all
-from pin_metaik.ik.solver import IKSolver, solve_ik
+from pin_metaik.ik.solve import solve_ik
+from pin_metaik.ik.solver import IKSolver
 from pin_metaik.ik.target import Target
 
 __all__ = [

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from functools import partial
 from time import perf_counter
 from typing import cast
 
@@ -15,9 +15,9 @@ import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting, InvalidTarget
-from pin_metaik.ik.problem import IKProblem
-from pin_metaik.ik.refine.dls import DLS, Batch
+from pin_metaik.ik.fast import run_lane
 from pin_metaik.ik.result import IKResult, IKStatus
+from pin_metaik.ik.solve import solve_one
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
 from pin_metaik.ik.starts import FIRST, Rng, drawn
 from pin_metaik.ik.target import DEFAULT_TOLERANCE, Target, TargetLike
@@ -64,7 +64,8 @@ class IKBatch:
             float(self.orientation_error[i]),
             int(self.evaluations[i]),
             self.seconds / len(self),
-            IKProblem.of(self.chain, self.targets[i]),
+            self.chain,
+            self.targets[i],
         )
 
     def __iter__(self) -> Iterator[IKResult]:
@@ -103,71 +104,72 @@ def solve_ik_batch(
     array = _as_array(targets)
     asked = cast(Sequence[TargetLike], targets) if array is None else array
     k = len(asked)
+    bases = _bases(chain, q0, k)
     batch = IKBatch(
-        _bases(chain, q0, k), np.zeros(k, bool), np.empty(k, object), np.zeros(k), np.zeros(k), np.zeros(k, int), 0.0,
+        bases.copy(), np.zeros(k, bool), np.empty(k, object), np.zeros(k), np.zeros(k), np.zeros(k, int), 0.0,
         chain, asked,
     )  # fmt: skip
 
     def alone(i: int) -> None:
-        result = solver.solve(IKProblem.of(chain, asked[i]), batch.q[i], seed)
+        result = solve_one(chain, asked[i], bases[i], solver, seed)
         batch.q[i], batch.success[i], batch.status[i] = result.q, result.success, result.status
         batch.position_error[i], batch.orientation_error[i] = result.position_error, result.orientation_error
         batch.evaluations[i] = result.evaluations
 
     fast = solver.fast if array is not None and len(chain.frames) == 1 else None
     with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
+        left: Iterable[int] = range(k)
         if array is not None and fast is not None:
-            tasks, starts = _tasks(array), drawn(chain, seed, 0, FIRST)
-            _ = chain.atlas  # made once, before the threads ask for it
-            together = partial(_solve_part, batch, tasks, starts, fast, solver.first_evaluations)
-            parts = pool.map(together, [slice(i, min(i + CHUNK, k)) for i in range(0, k, CHUNK)])
-            left = [i for part in parts for i in part]
-        else:
-            left = list(range(k))
-        list(pool.map(alone, left))
+            poses, starts = _as_poses(array), drawn(chain, seed, 0, FIRST)
+            _ = chain.lane  # made once, before the threads ask for it
+            tolerances = DEFAULT_TOLERANCE, DEFAULT_TOLERANCE if array.ndim == 3 else math.inf
+
+            def together(part: slice) -> NDArray[np.int64]:
+                ended = run_lane(chain, solver, fast, starts, tolerances, poses[part], bases[part], batch.q[part])
+                return _judge(batch, poses[part], tolerances, ended, part)
+
+            left = np.concatenate([*pool.map(together, _slices(k)), np.empty(0, np.int64)])
+        list(pool.map(alone, map(int, left)))
     return replace(batch, seconds=perf_counter() - began)
 
 
-def _solve_part(
+def _slices(k: int) -> list[slice]:
+    return [slice(i, min(i + CHUNK, k)) for i in range(0, k, CHUNK)]
+
+
+def _judge(
     batch: IKBatch,
-    tasks: NDArray[np.float64],
-    starts: NDArray[np.float64],
-    dls: DLS,
-    evaluations: int,
+    poses: NDArray[np.float64],
+    tolerances: tuple[float, float],
+    ended: NDArray[np.int64],
     part: slice,
-) -> list[int]:
-    """The first step of the automatic solver for one part of the batch; returns the numbers of the unsolved."""
-    chain, bases = batch.chain, batch.q[part]
-    k = len(bases)
-    found = Batch(chain.x(bases), np.empty((k, chain.n)), np.empty(k, np.int64), np.empty(k, np.int64))
-    dls.refine_batch(chain, tasks[part], starts, evaluations, found)
-    q = chain.q(found.x, bases)
-    position, orientation = _errors(chain, q, tasks[part, 0])
-    inside = ((chain.limits.lower <= found.x) & (chain.limits.upper >= found.x)).all(axis=1)
-    met = inside & (position <= DEFAULT_TOLERANCE) & (orientation <= DEFAULT_TOLERANCE)
-    numbers = np.arange(part.start, part.stop)
-    at = numbers[met]
-    batch.q[at], batch.success[at], batch.status[at] = q[met], True, IKStatus.SOLVED
-    batch.position_error[at], batch.orientation_error[at] = position[met], orientation[met]
-    batch.evaluations[at] = found.evaluations[met]
-    return [int(i) for i in numbers[~met]]
+) -> NDArray[np.int64]:
+    """Let Pinocchio judge one part of the batch; returns the numbers of what is left to solve."""
+    chain, q = batch.chain, batch.q[part]
+    position, orientation = _errors(chain, q, poses)
+    if tolerances[1] == math.inf:
+        orientation[:] = 0.0
+    batch.position_error[part], batch.orientation_error[part] = position, orientation
+    batch.evaluations[part] = ended[:, 0]
+    met = (position <= tolerances[0]) & (orientation <= tolerances[1]) & [chain.holds(one) for one in q]
+    batch.success[part] = met
+    batch.status[part] = IKStatus.SOLVED
+    return np.arange(part.start, part.stop)[~met]
 
 
 def _errors(
-    chain: Chain, q: NDArray[np.float64], tasks: NDArray[np.float64]
+    chain: Chain, q: NDArray[np.float64], poses: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Distance and angle (k,) of configurations q (k, nq) from the targets of tasks (k, 26); 0 if free."""
+    """Distance and angle (k,) of the chain's frame from poses (k, 4, 4) at configurations q (k, nq), by Pinocchio."""
     model, data, frame = chain.model, chain.data, chain.frame_ids[0]
     reached = np.empty((len(q), 4, 4))
     for i, one in enumerate(q):
         pin.forwardKinematics(model, data, one)
         reached[i] = pin.updateFramePlacement(model, data, frame).homogeneous
-    world = tasks[:, :9].reshape(-1, 3, 3)
-    away = (world @ reached[:, :3, 3:])[..., 0] + tasks[:, 9:12]
-    R = world @ reached[:, :3, :3]
+    R = poses[:, :3, :3].transpose(0, 2, 1) @ reached[:, :3, :3]
     skew = 0.5 * np.stack([R[:, 2, 1] - R[:, 1, 2], R[:, 0, 2] - R[:, 2, 0], R[:, 1, 0] - R[:, 0, 1]], axis=1)
     angle = np.arctan2(np.linalg.norm(skew, axis=1), 0.5 * (np.trace(R, axis1=1, axis2=2) - 1.0))
-    return np.linalg.norm(away, axis=1), np.where(np.isinf(tasks[:, 15]), 0.0, angle)
+    return np.linalg.norm(reached[:, :3, 3] - poses[:, :3, 3], axis=1), angle
 
 
 def _as_array(targets: ArrayLike | Sequence[TargetLike]) -> NDArray[np.float64] | None:
@@ -197,17 +199,13 @@ def _as_array(targets: ArrayLike | Sequence[TargetLike]) -> NDArray[np.float64] 
     return array
 
 
-def _tasks(array: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Tasks (k, 1, 26) of poses (k, 4, 4) or positions (k, 3) with the default tolerances."""
-    whole = array.ndim == 3
-    tasks = np.repeat((Target(np.eye(4)) if whole else Target.at(np.zeros(3))).task[None, None], len(array), axis=0)
-    if whole:
-        world = array[:, :3, :3].transpose(0, 2, 1)
-        tasks[:, 0, :9] = world.reshape(-1, 9)
-        tasks[:, 0, 9:12] = -(world @ array[:, :3, 3:])[..., 0]
-    else:
-        tasks[:, 0, 9:12] = -array
-    return tasks
+def _as_poses(array: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Poses (k, 4, 4); of positions (k, 3) with no rotation."""
+    if array.ndim == 3:
+        return np.ascontiguousarray(array)
+    poses = np.repeat(np.eye(4)[None], len(array), axis=0)
+    poses[:, :3, 3] = array
+    return poses
 
 
 def _bases(chain: Chain, q0: ArrayLike | None, k: int) -> NDArray[np.float64]:

@@ -135,11 +135,6 @@ def _rows(counts: tuple[tuple[bool, ...], ...]) -> NDArray[np.int64]:
     return np.ascontiguousarray(np.argwhere(np.array(counts)))
 
 
-def rows_of(tasks: NDArray[np.float64]) -> NDArray[np.int64]:
-    """(m, 2) the (frame, axis) pairs of tasks (T, 26) that are not free."""
-    return _rows(tuple(map(tuple, np.isfinite(tasks[:, 12:18]).tolist())))
-
-
 def _match(frames: tuple[str, ...], targets: tuple[Target, ...]) -> tuple[Target, ...]:
     """The targets in the order of the frames."""
     if len(targets) == len(frames) and all(target.frame is None for target in targets):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -10,6 +11,8 @@ from numpy.typing import NDArray
 
 from pin_metaik.dexterity import rank
 from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.target import TargetLike
+from pin_metaik.kinematics import Chain
 
 AT_LIMIT = 1e-9  # rad or m
 
@@ -40,7 +43,8 @@ class IKResult:
         orientation_error: Angle to the target in rad, by Pinocchio; the worst frame's; 0 when orientation is free.
         evaluations: Forward kinematics computed, one a configuration.
         seconds: Time taken, s.
-        problem: What was asked.
+        chain: The chain that was asked for ...
+        target: ... what.
         trace: (g, 2) evaluations and best cost after each generation of the seeder, when asked for.
     """
 
@@ -50,8 +54,14 @@ class IKResult:
     orientation_error: float
     evaluations: int
     seconds: float
-    problem: IKProblem = field(repr=False)
+    chain: Chain = field(repr=False)
+    target: TargetLike | Sequence[TargetLike] = field(repr=False)
     trace: NDArray[np.float64] | None = field(default=None, repr=False)
+
+    @property
+    def problem(self) -> IKProblem:
+        """What was asked."""
+        return IKProblem.of(self.chain, self.target)
 
     @property
     def success(self) -> bool:
@@ -61,12 +71,12 @@ class IKResult:
     @property
     def x(self) -> NDArray[np.float64]:
         """(n,) the chain's coordinates at ``q``."""
-        return self.problem.chain.x(self.q)
+        return self.chain.x(self.q)
 
     @property
     def binding(self) -> tuple[str, ...]:
         """Names of the joints that are at a limit."""
-        limits, x = self.problem.limits, self.x
+        limits, x = self.chain.limits, self.x
         at_limit = (x <= limits.lower + AT_LIMIT) | (x >= limits.upper - AT_LIMIT)
         return tuple(name for name, binds in zip(limits.names, at_limit, strict=True) if binds)
 
@@ -85,10 +95,10 @@ class IKResult:
                 return f"out of reach: at least {self.problem.gap:.3g} m beyond what the links can span"
             case IKStatus.OUT_OF_TOLERANCE:
                 stuck = f"; at a limit: {', '.join(self.binding)}" if self.binding else ""
-                lost = len(self.problem.rows) - self.rank
-                lost_text = f"; {lost} of {len(self.problem.rows)} directions lost there" if lost else ""
+                asked = len(self.problem.rows)
+                lost = f"; {asked - self.rank} of {asked} directions lost there" if self.rank < asked else ""
                 spent = f"nothing close enough found in {self.evaluations} evaluations"
-                return f"{spent}; this is the nearest{stuck}{lost_text}"
+                return f"{spent}; this is the nearest{stuck}{lost}"
             case IKStatus.IN_COLLISION:
                 return "met only in collision"
             case IKStatus.STOPPED:

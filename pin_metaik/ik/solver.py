@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
 
@@ -14,13 +13,11 @@ from pin_metaik.errors import InvalidBudget, InvalidSetting, UnknownName
 from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.nullspace import slide
 from pin_metaik.ik.problem import IKProblem
-from pin_metaik.ik.refine import DLS, Refiner, make_refiner
+from pin_metaik.ik.refine import DLS, Refinement, Refiner, make_refiner
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.select import SELECT
 from pin_metaik.ik.solutions import collect
 from pin_metaik.ik.starts import DEFAULT_SEED, Rng, start_batches
-from pin_metaik.ik.target import TargetLike
-from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
 
 ELITE = 8  # points of a seeder's search that are refined
@@ -81,18 +78,25 @@ class IKSolver:
         if not self.budget.ends:
             raise InvalidBudget("this search might never end: give the budget evaluations=... or seconds=...")
 
-    def solve(self, problem: IKProblem, q0: ArrayLike | None = None, rng: Rng = None) -> IKResult:
-        """Search until the targets are met or the budget is spent; see ``solve_ik`` for the arguments."""
+    def solve(
+        self, problem: IKProblem, q0: ArrayLike | None = None, rng: Rng = None, *, first: Refinement | None = None
+    ) -> IKResult:
+        """Search until the targets are met or the budget is spent; see ``solve_ik`` for the arguments.
+
+        ``first`` is what the fast lane came to, if it has tried the first starts already.
+        """
         began = perf_counter()
         chain = problem.chain
         base = chain.reference if q0 is None else chain.configuration(q0)
         x0 = chain.x(base)
         ledger = Ledger(problem, self.budget, began, x0)
+        if first is not None:
+            ledger.add(first)
         try:
             if self.select != "first":
                 self._choose(problem, x0, rng, ledger)
             if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
-                self._restart(problem, self._refiner, x0, rng, ledger)
+                self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
             if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
                 self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
             if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None:
@@ -109,7 +113,8 @@ class IKSolver:
             orientation_error=verdict.orientation_error,
             evaluations=ledger.spent,
             seconds=perf_counter() - began,
-            problem=problem,
+            chain=chain,
+            target=problem.targets,
             trace=np.concatenate(ledger.traces) if ledger.traces else None,
         )
 
@@ -135,13 +140,17 @@ class IKSolver:
         """Evaluations that the automatic solver spends on restarts before it turns to a seeder."""
         return ENDLESS if self.budget.evaluations is None else math.ceil(RESTART_SHARE * self.budget.evaluations)
 
-    def _restart(self, problem: IKProblem, refiner: Refiner, x0: NDArray[np.float64], rng: Rng, ledger: Ledger) -> None:
+    def _restart(
+        self, problem: IKProblem, refiner: Refiner, x0: NDArray[np.float64], rng: Rng, ledger: Ledger, tried: int
+    ) -> None:
         """Refine from x0 (n,), then from random starts; the automatic solver also from an atlas of the chain."""
         share = 1.0 - RESERVE if self._seeder is None else RESTART_SHARE
         refine = refiner.refine
-        if self._seeder is not None and isinstance(refiner, DLS):
+        if self._seeder is not None and isinstance(refiner, DLS) and not tried:
             refine = refiner.refine_anywhere
-        for starts in start_batches(problem.chain, x0, rng, self.starts):
+        if tried and (ledger.over(share) or problem.gap > 0.0):
+            return
+        for starts in start_batches(problem.chain, x0, rng, self.starts, tried):
             ledger.add(refine(problem, starts, ledger.left(share)))
             if ledger.over(share) or problem.gap > 0.0:
                 return
@@ -170,37 +179,6 @@ class IKSolver:
             if ledger.over(1.0 - RESERVE) or problem.gap > 0.0:
                 return
             seeds = None
-
-
-def solve_ik(
-    chain: Chain,
-    target: TargetLike | Sequence[TargetLike],
-    q0: ArrayLike | None = None,
-    *,
-    solver: IKSolver | None = None,
-    rng: Rng = None,
-) -> IKResult:
-    """Find a configuration that places the chain's frames where they shall be.
-
-    Args:
-        chain: The joints to move and the frames to place.
-        target: World pose of the chain's frame (``pin.SE3`` or 4x4), a position (3,) in m, a ``Target``, or one
-            ``Target`` for each frame of a chain that has several.
-        q0: (nq,) configuration to start from; joints outside the chain stay as they are in it. Default: the chain's
-            reference.
-        solver: How to search; default ``IKSolver()``.
-        rng: Seed or generator of every random choice; ``None`` is a fixed seed, so that the same call gives the same
-            answer.
-
-    Returns:
-        The result: check ``result.success``. A target out of reach is a result too, with the nearest pose found.
-
-    Raises:
-        InvalidTarget: If the target is not a pose, position or orientation.
-        InvalidConfiguration: If ``q0`` is not a configuration of the model.
-        InvalidBounds: If a joint of the chain has no finite range to search in.
-    """
-    return (solver or DEFAULT_SOLVER).solve(IKProblem.of(chain, target), q0, rng)
 
 
 DEFAULT_SOLVER = IKSolver()

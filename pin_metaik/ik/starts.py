@@ -17,10 +17,12 @@ DEFAULT_SEED = 0
 FIRST, BATCH = 16, 64  # starts refined before the first look at the clock and at the reach, and between further ones
 
 
-def start_batches(chain: Chain, x0: NDArray[np.float64], rng: Rng, count: int | None) -> Iterator[NDArray[np.float64]]:
-    """Starts (s, n) in batches, x0 the very first; ``count`` in all, or endless."""
+def start_batches(
+    chain: Chain, x0: NDArray[np.float64], rng: Rng, count: int | None, tried: int = 0
+) -> Iterator[NDArray[np.float64]]:
+    """Starts (s, n) in batches, x0 the very first; ``count`` in all, or endless; less the batches already ``tried``."""
     given = 0
-    for index in itertools.count():
+    for index in itertools.count(tried):
         starts = drawn(chain, rng, index, BATCH if index else FIRST)
         if index == 0:
             starts[0] = x0

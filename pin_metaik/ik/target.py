@@ -101,6 +101,17 @@ class Target:
         raise InvalidTarget(f"a target is a pin.SE3, a 4x4 matrix, a position (3,) or a Target, got {target!r}")
 
     @property
+    def plain(self) -> bool:
+        """Whether it is a whole pose or a position alone, with a radius for a tolerance and equal weights."""
+        return (
+            self.frame is None
+            and isinstance(self.position_tolerance, float)
+            and self.position_tolerance < FREE
+            and isinstance(self.orientation_tolerance, float)
+            and self.position_weight == self.orientation_weight == 1.0
+        )
+
+    @property
     def allowance(self) -> tuple[float, float]:
         """The largest distance (m) and angle (rad) that may still be met; ``inf`` when an axis is free."""
         return _radius(self.position_tolerance), _radius(self.orientation_tolerance)

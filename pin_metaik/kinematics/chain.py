@@ -149,6 +149,22 @@ class Chain:
         X = self.box.sample(np.random.default_rng(SEED), LEAF * LEAF)
         return chart(X, self.poses(X))
 
+    @cached_property
+    def lane(self) -> tuple[object, ...]:
+        """What the fast lane's loop takes of a chain with one frame."""
+        coordinates, joints = self.coordinates, self.model.joints
+        places = [(joints[int(j)].idx_q, joints[int(j)].nq == 2) for j in coordinates.joints]
+        places_of = np.array(places, dtype=np.int64)
+        return *self.paths.arrays, *self.limits.arrays, *self.atlas.arrays, self._least, self._most, places_of
+
+    @cached_property
+    def _entry_pairs(self) -> list[tuple[float, float]]:
+        return list(zip(self._least.tolist(), self._most.tolist(), strict=True))
+
+    def holds(self, q: NDArray[np.float64]) -> bool:
+        """Whether every joint of a configuration q (nq,) is inside its limits."""
+        return all(low <= v <= high for (low, high), v in zip(self._entry_pairs, q.tolist(), strict=True))
+
     def sample(self, count: int, seed: tuple[int, ...]) -> NDArray[np.float64]:
         """Coordinates (count, n) drawn uniformly from the box; the same for the same seed, and then at no cost."""
         if (count, seed) not in self._samples:
@@ -195,9 +211,9 @@ def _remade(
 
 def _kernels() -> ModuleType:
     """The compiled loops, imported late: what compiles them takes 0.4 s to import."""
-    from pin_metaik.kinematics import searches
+    from pin_metaik.kinematics import loops
 
-    return searches
+    return loops
 
 
 def as_configuration(model: pin.Model, q: ArrayLike) -> NDArray[np.float64]:

@@ -8,9 +8,7 @@ import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit, shared
 from pin_metaik.kinematics.descent import Arm, Bounds, Settings, Work, descend_from, evaluate, workspace
-from pin_metaik.kinematics.kernels import PATHS, costs, forward, poses
-
-__all__ = ["costs", "descend", "descend_all", "descend_batch", "linearize", "neighbours", "poses"]
+from pin_metaik.kinematics.kernels import PATHS, forward
 
 ATLAS = "f8[:,:,::1], f8[:,::1], f8"  # leaves, entries, scale
 
@@ -214,55 +212,6 @@ def descend(
         best,
         work,
     )
-
-
-@jit(
-    f"void({PATHS}, f8[:,:,::1], i8[:,::1], {BOUNDS}, {ATLAS}, f8[:,::1], f8[:,::1], {SETTINGS}, "
-    "f8[:,::1], i8[::1], i8[::1])"
-)
-def descend_batch(
-    joints: Floats,
-    wiring: Ints,
-    ends: Ints,
-    tips: Floats,
-    tasks: Floats,
-    rows: Ints,
-    lower: Floats,
-    upper: Floats,
-    winds: Ints,
-    leaves: Floats,
-    entries: Floats,
-    scale: float,
-    guesses: Floats,
-    starts: Floats,
-    damping: float,
-    progress: float,
-    per_start: int,
-    evaluations: int,
-    best: Floats,
-    spent: Ints,
-    solved_by: Ints,
-) -> None:
-    """``search`` for many targets: tasks (k, T, 26), a guess (k, n) for each, the same further starts (s, n) for all.
-
-    Row i of ``best`` (k, n), ``spent`` (k,) and ``solved_by`` (k,) is what ``descend`` gives for target i alone.
-    """
-    work = workspace(lower.shape[0], rows.shape[0], joints.shape[0])
-    own = starts.copy()
-    for i in range(tasks.shape[0]):
-        own[0] = guesses[i]
-        spent[i], solved_by[i] = search(
-            (joints, wiring, ends, tips),
-            tasks[i],
-            rows,
-            (lower, upper, winds),
-            (leaves, entries, scale),
-            own,
-            (damping, progress, per_start),
-            evaluations,
-            best[i],
-            work,
-        )
 
 
 @inline

@@ -37,7 +37,7 @@ class NoPath(MetaIKError):
 
     def __init__(self, start: tuple[float, float], goal: tuple[float, float], clearance: float) -> None:
         self.start, self.goal, self.clearance = start, goal, clearance
-        hint = "; try a smaller radius or margin" if clearance else ""
+        hint = "; try a smaller radius or margin, or round joins" if clearance else ""
         super().__init__(
             f"no path from ({start[0]:g}, {start[1]:g}) to ({goal[0]:g}, {goal[1]:g}): obstacles or walls close every "
             f"way that keeps a clearance of {clearance:g}{hint}"

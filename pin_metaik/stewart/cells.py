@@ -15,7 +15,8 @@ from pin_metaik.stewart.grid import Grid, Range
 from pin_metaik.stewart.limits import LegLimits
 from pin_metaik.stewart.loading import load_kernels
 
-COLUMNS = 48  # along x and y, when looking for how far the legs reach
+COLUMNS = np.linspace(0.0, 1.0, 48)
+"""Where columns stand along x and y, when looking for how far the legs reach, as shares of the range."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,8 +85,8 @@ def _reach(grid: Grid, geometry: Geometry, limits: LegLimits, turned: Array) -> 
     high = np.maximum((spheres.min(axis=1) + limits.longest).max(axis=0), low)
     floor = float(spheres[..., 2].max(axis=1).min())  # platform joints above base joints
     x, y = grid.x or (float(low[0]), float(high[0])), grid.y or (float(low[1]), float(high[1]))
-    xs, ys = np.linspace(*x, COLUMNS), np.linspace(*y, COLUMNS)
-    bottoms, tops = np.empty((COLUMNS, COLUMNS)), np.empty((COLUMNS, COLUMNS))
+    xs, ys = (ends[0] + (ends[1] - ends[0]) * COLUMNS for ends in (x, y))
+    bottoms, tops = np.empty((len(xs), len(ys))), np.empty((len(xs), len(ys)))
     load_kernels().heights(geometry.arrays[0], turned, xs, ys, limits.shortest, limits.longest, bottoms, tops)
     open_: NDArray[np.bool_] = bottoms <= tops
     if not open_.any():

@@ -137,8 +137,8 @@ def chords(radius: float, angles: Array) -> Array:
 
     Negative where the angles are out of order: by how much they are.
     """
-    steps = np.diff(angles, append=angles[:1] + tau)
-    return np.asarray(2.0 * radius * np.sin(np.clip(0.5 * steps, -np.pi / 2, np.pi)))
+    steps = np.append(angles[1:], angles[0] + tau) - angles
+    return np.asarray(2.0 * radius * np.sin(np.maximum(np.minimum(0.5 * steps, np.pi), -np.pi / 2)))
 
 
 def legs_of(connection: ArrayLike) -> tuple[tuple[int, int], ...]:
@@ -165,6 +165,8 @@ def _frozen(array: Array) -> Array:
 
 
 def _number(name: str, value: object) -> float:
+    if type(value) is float and isfinite(value):  # a design makes thousands of geometries
+        return value
     if isinstance(value, bool) or not isinstance(value, Real) or not isfinite(value):
         raise InvalidGeometry(f"{name} is a finite number, got {value!r}")
     return float(value)

@@ -27,7 +27,7 @@ def test_rv7fl_puts_the_paper_and_ours_side_by_side(tmp_path):
         "evals paper",
         "evals ours",
         "s paper",
-        "s ours",
+        "CPU s ours",
         "0.0005234",
         "What changes. MTDE",
         "--long runs them",
@@ -47,7 +47,7 @@ def test_aerial_arm_puts_the_paper_and_ours_side_by_side(tmp_path, monkeypatch):
     monkeypatch.setattr(aerial_arm, "LONG", 4200)
     result = command("aerial_arm", "--quick", "--runs", 1, "--out", tmp_path)
     assert result.exit_code == 0, result.output
-    for word in ("J paper", "total paper", "total ours", "s paper", "s ours", "11.62", "SFLA + DLS"):
+    for word in ("J paper", "total paper", "total ours", "s paper", "CPU s ours", "11.62", "SFLA + DLS"):
         assert word in result.output
     tables = {"table_3", "de", "hybrids", "angles", "runs"}
     assert files(tmp_path) == {

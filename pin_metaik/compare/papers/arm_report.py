@@ -22,12 +22,12 @@ def summary(trials: Sequence[Trial]) -> tuple[Value, ...]:
 
 
 def median_seconds(trials: Sequence[Trial]) -> float | None:
-    """Median time of a run, in s."""
+    """Median processor time of a run, in s."""
     return median(trial.seconds for trial in trials) if trials else None
 
 
 def seconds_per_evaluation(trials: Sequence[Trial]) -> float | None:
-    """Median time of an evaluation with all that the method does around it, in s."""
+    """Median processor time of an evaluation with all that the method does around it, in s."""
     return median(trial.seconds / trial.evaluations for trial in trials) if trials else None
 
 
@@ -46,7 +46,7 @@ def hybrids(name: str, trials: Sequence[Trial], cost: str) -> Table:
         *SUMMARY,
         Column("evals median", ",.0f"),
         Column("evals most", ","),
-        Column("ms median", ".1f"),
+        Column("CPU ms", ".1f"),
     )
     return Table(name, f"{cost}: the seeder at a tenth of the budget, then DLS until it is solved", columns, rows)
 

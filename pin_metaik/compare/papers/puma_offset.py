@@ -163,9 +163,9 @@ def table(trials: Sequence[Trial]) -> Table:
         *SUMMARY,
         Column("d best", ".2g"),
         Column("s paper", ".3f"),
-        Column("s ours", ".3f"),
+        Column("CPU s ours", ".3f"),
     )
-    return Table("puma_offset_o", "O and time of a run: the paper's, and ours", columns, rows)
+    return Table("puma_offset_o", "O and median time of a run: the paper's, and ours", columns, rows)
 
 
 def printed_answer() -> Table:

@@ -121,9 +121,9 @@ def side_by_side(name: str, trials: Sequence[Trial], budgets: Mapping[str, int],
             spent = (papers[method], budget)
             rows.append((case, method, *spent, paper.F, *summary(ours), paper.seconds, median_seconds(ours)))
     evaluations = (Column("evals paper", ","), Column("evals ours", ","))
-    times = (Column("s paper", ".3f"), Column("s ours", ".3f"))
+    times = (Column("s paper", ".3f"), Column("CPU s ours", ".3f"))
     columns = (Column("case"), Column("method"), *evaluations, Column("paper", ".4g"), *SUMMARY, *times)
-    return Table(name, "F in mm and time of a run in s; the paper's best of 10 runs, and ours", columns, rows)
+    return Table(name, "F in mm and median time of a run in s; the paper's best of 10 runs, and ours", columns, rows)
 
 
 def versus(method: str, trials: Sequence[Trial], budgets: Mapping[str, int]) -> str:

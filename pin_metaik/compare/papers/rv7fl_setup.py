@@ -27,7 +27,7 @@ METHODS: dict[str, Metaheuristic] = {
 }
 
 # Budgets in evaluations. The paper's iterations are packs of 300 for the wolves and single evaluations for MTDE: only
-# then do its printed times all give 23 to 29 us an evaluation.
+# then do all printed times of the long budget give 20 to 30 us an evaluation.
 SHORT = {"GWO": 1000 * AGENTS, "improved GWO": 1000 * AGENTS, "MTDE": 1000}
 LONG = {"GWO": 600_000 * AGENTS, "improved GWO": 600_000 * AGENTS, "MTDE": 600_000}
 EQUAL = {"GWO": 300_000, "improved GWO": 300_000, "MTDE": 300_000}

@@ -3,29 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.ik.problem import IKProblem, rows_of
+from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.protocol import Refinement
-from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.atlas import Atlas, no_atlas
 
 PROGRESS = 0.49  # a start is given up unless four steps bring the squared error below this share,
 SETTLED = 1.0 - 1e-9  # ... or this one, when there is nothing else to try
 STIFF = 1.0  # damping where a solution is far: plain least squares overshoots there
-
-
-class Batch(NamedTuple):
-    """Of k targets: guesses (k, n); and, to be filled, coordinates (k, n), evaluations (k,) and solving starts (k,)."""
-
-    guesses: NDArray[np.float64]
-    x: NDArray[np.float64]
-    evaluations: NDArray[np.int64]
-    solved_by: NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -61,35 +50,6 @@ class DLS:
         The first start (s, n) goes before them when its pose is nearer to the target than theirs.
         """
         return self._descend(problem, problem.chain.atlas, starts, evaluations, PROGRESS)
-
-    def refine_batch(
-        self, chain: Chain, tasks: NDArray[np.float64], starts: NDArray[np.float64], evaluations: int, batch: Batch
-    ) -> None:
-        """``refine_anywhere`` for many targets in one compiled loop.
-
-        Args:
-            chain: The chain, all targets alike in what they leave free.
-            tasks: (k, T, 26), as ``Target.task``.
-            starts: (s, n) starts for all; the first is replaced by each target's guess.
-            evaluations: Forward kinematics that may be spent on each.
-            batch: Guesses in, answers out.
-        """
-        chain.kernels.descend_batch(
-            *chain.paths.arrays,
-            tasks,
-            rows_of(tasks[0]),
-            *chain.limits.arrays,
-            *chain.atlas.arrays,
-            batch.guesses,
-            starts,
-            self.damping,
-            PROGRESS,
-            self.iterations,
-            evaluations,
-            batch.x,
-            batch.evaluations,
-            batch.solved_by,
-        )
 
     def settle(self, problem: IKProblem, x: NDArray[np.float64], evaluations: int) -> Refinement:
         """Go on from x (n,) in small steps as long as it gets nearer at all: for targets that cannot be met."""

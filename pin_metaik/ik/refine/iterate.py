@@ -76,7 +76,7 @@ def iterate(
                     break
                 mark = square
             dx = step(x, r, J, square)
-            if not math.isfinite(dx @ dx):
+            if not math.isfinite(dx.dot(dx)):
                 break
             x = np.minimum(np.maximum(x + dx, lower), upper)
         if found or spent >= evaluations:

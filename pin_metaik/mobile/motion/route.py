@@ -18,6 +18,8 @@ from pin_metaik.optimize.space import Array
 
 FLAT = 1e-9  # m; corners nearer to a straight line are none
 TINY = 1e-12  # s; no tangent length per speed is shorter, so that it can be divided by
+SLOW = 1e-3  # of the largest speed; a corner that allows no more is for stopping
+SKIN = 1e-6  # m; how deep a point robot may touch an obstacle
 HALVINGS = 34  # of the interval in which the largest free speed lies
 
 
@@ -118,16 +120,15 @@ class Route:
         near = tree.query(shapely.Polygon(at + cap * shape), predicate="dwithin", distance=radius)
         if not len(near):
             return cap
-        walls = shapely.union_all([obstacles[i] for i in near])
-        shapely.prepare(walls)
+        solid = shapely.union_all([obstacles[i] for i in near])
         free, tight = 0.0, cap
         for _ in range(HALVINGS):
             v = (free + tight) / 2
-            if shapely.distance(shapely.Polygon(at + v * shape), walls) >= radius:
+            if keeps_clear([shapely.Polygon(at + v * shape)], solid, radius):
                 free = v
             else:
                 tight = v
-        return free if free > 1e-6 * cap else 0.0
+        return free if free > SLOW * self.vehicle.v_max else 0.0
 
     def _curve(self, corner: int) -> Array:
         """The curve at speed 1 with the corner as its first point, both relative to the corner (m + 1, 2)."""
@@ -137,3 +138,17 @@ class Route:
         cos, sin = along / np.hypot(*along)
         y = np.copysign(1.0, turn) * y
         return np.vstack(([0.0, 0.0], np.column_stack((cos * x - sin * y, sin * x + cos * y))))
+
+
+def keeps_clear(places: Sequence[shapely.Geometry], solid: shapely.Geometry, radius: float, slack: float = 0.0) -> bool:
+    """Whether places keep a distance from what is solid; a robot without a radius may touch it.
+
+    Args:
+        places: Where the robot's centre is.
+        solid: The obstacles, joined.
+        radius: The distance, m.
+        slack: How much nearer still counts, m.
+    """
+    if radius > 0:
+        return bool((shapely.distance(places, solid) >= radius - slack).all())
+    return not shapely.intersects(places, solid.buffer(-SKIN, join_style="mitre")).any()

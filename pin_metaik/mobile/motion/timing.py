@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.motion.learned import LearnedTurn, TurnReport, learn_turn
-from pin_metaik.mobile.motion.route import Route
+from pin_metaik.mobile.motion.route import Route, keeps_clear
 from pin_metaik.mobile.motion.speeds import Speeds, optimal_speeds, searched_speeds
 from pin_metaik.mobile.motion.straight import straight_phases
 from pin_metaik.mobile.motion.trajectory import SAMPLES, Phase, Trajectory
@@ -85,24 +85,24 @@ class TrajectoryPlan:
 
     @cached_property
     def clearance(self) -> float:
-        """Least distance, m, of the robot's centre from an obstacle; inf without obstacles.
-
-        Straights are measured as a whole, curves at samples so dense that less than a micrometre can be missed.
-        """
+        """Least distance, m, of the robot's centre from an obstacle; inf without obstacles."""
         if not self.obstacles:
             return float("inf")
-        trajectory, solid = self.trajectory, shapely.union_all(self.obstacles)
-        shapely.prepare(solid)
-        ends = trajectory.at(trajectory.boundaries).xy
-        straights = [shapely.LineString(ends[i : i + 2]) for i, p in enumerate(trajectory.phases) if p.straight]
-        samples = trajectory.sample(DENSE)
-        curves = shapely.points(samples.xy[(samples.alpha != 0) | (samples.omega != 0)])
-        return float(min(shapely.distance(places, solid).min(initial=np.inf) for places in (straights, curves)))
+        return float(shapely.distance(self._places, shapely.union_all(self.obstacles)).min())
 
-    @property
+    @cached_property
     def collision_free(self) -> bool:
         """Whether the trajectory keeps the radius."""
-        return self.clearance >= self.radius - ROOM
+        return not self.obstacles or keeps_clear(self._places, shapely.union_all(self.obstacles), self.radius, ROOM)
+
+    @cached_property
+    def _places(self) -> list[shapely.Geometry]:
+        """Where the robot is: straights as a whole, curves as samples so dense that they miss less than 1e-6 m."""
+        ends = self.trajectory.at(self.trajectory.boundaries).xy
+        straights = [shapely.LineString(ends[i : i + 2]) for i, p in enumerate(self.trajectory.phases) if p.straight]
+        samples = self.trajectory.sample(DENSE)
+        curves = shapely.points(samples.xy[(samples.alpha != 0) | (samples.omega != 0)])
+        return [shapely.Point(ends[0]), *straights, *curves]
 
     @property
     def success(self) -> bool:

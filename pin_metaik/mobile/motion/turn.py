@@ -90,7 +90,8 @@ def clothoid(theta: ArrayLike, omega: ArrayLike, alpha: ArrayLike, t: ArrayLike)
     Returns:
         Displacements x + i y (...), complex, in m for a speed of 1 m/s.
     """
-    theta, omega, alpha, t = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (theta, omega, alpha, t)))
+    shape = np.broadcast(theta, omega, alpha, t).shape
+    theta, omega, alpha, t = (np.broadcast_to(v, shape).ravel() for v in (theta, omega, alpha, t))
     bends, arcs = alpha != 0, (alpha == 0) & (omega != 0)
     z = t * np.exp(1j * theta)
     w = omega[arcs]
@@ -101,7 +102,7 @@ def clothoid(theta: ArrayLike, omega: ArrayLike, alpha: ArrayLike, t: ArrayLike)
     S1, C1 = fresnel((t[bends] + w / a) / k)
     phase = theta[bends] - w**2 / (2 * a)
     z[bends] = k * np.exp(1j * phase) * ((C1 - C0) + 1j * np.sign(a) * (S1 - S0))
-    return z
+    return z.reshape(shape)
 
 
 def _shape(theta: ArrayLike, vehicle: SynchroDrive) -> tuple[Array, Array]:

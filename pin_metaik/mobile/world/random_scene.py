@@ -30,8 +30,8 @@ def random_scene(
         rng: Seed or generator.
         size: Width of the workspace, in m.
         fill: Share of the workspace that the circles around the obstacles cover.
-        gap: Least distance between obstacles, and from them to start and goal, in m; twice a robot's clearance lets it
-            through everywhere.
+        gap: Least distance between obstacles, and from them to start and goal, in m. Twice a robot's clearance lets it
+            through everywhere, if obstacles grow with round joins: mitred corners stick out further.
         start: (x, y); default: near the lower left corner.
         goal: (x, y); default: near the upper right corner.
 

@@ -1,0 +1,56 @@
+"""``solve_ik``: one target, one answer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from numpy.typing import ArrayLike
+
+from pin_metaik.ik.fast import solve_fast
+from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.result import IKResult
+from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
+from pin_metaik.ik.starts import Rng
+from pin_metaik.ik.target import TargetLike
+from pin_metaik.kinematics import Chain
+
+
+def solve_ik(
+    chain: Chain,
+    target: TargetLike | Sequence[TargetLike],
+    q0: ArrayLike | None = None,
+    *,
+    solver: IKSolver | None = None,
+    rng: Rng = None,
+) -> IKResult:
+    """Find a configuration that places the chain's frames where they shall be.
+
+    Args:
+        chain: The joints to move and the frames to place.
+        target: World pose of the chain's frame (``pin.SE3`` or 4x4), a position (3,) in m, a ``Target``, or one
+            ``Target`` for each frame of a chain that has several.
+        q0: (nq,) configuration to start from; joints outside the chain stay as they are in it. Default: the chain's
+            reference.
+        solver: How to search; default ``IKSolver()``.
+        rng: Seed or generator of every random choice; ``None`` is a fixed seed, so that the same call gives the same
+            answer.
+
+    Returns:
+        The result: check ``result.success``. A target out of reach is a result too, with the nearest pose found.
+
+    Raises:
+        InvalidTarget: If the target is not a pose, position or orientation.
+        InvalidConfiguration: If ``q0`` is not a configuration of the model.
+        InvalidBounds: If a joint of the chain has no finite range to search in.
+    """
+    return solve_one(chain, target, q0, solver or DEFAULT_SOLVER, rng)
+
+
+def solve_one(
+    chain: Chain, target: TargetLike | Sequence[TargetLike], q0: ArrayLike | None, solver: IKSolver, rng: Rng
+) -> IKResult:
+    """By the fast lane where it leads to the end, otherwise the long way on from there."""
+    fast = solve_fast(chain, target, q0, solver, rng)
+    if isinstance(fast, IKResult):
+        return fast
+    return solver.solve(IKProblem.of(chain, target), q0, rng, first=fast)
