@@ -13,10 +13,11 @@ import typer
 from rich.console import Console
 
 from pin_metaik import stewart
+from pin_metaik.errors import InvalidTarget
 from pin_metaik.optimize import ALGORITHMS, make
 from pin_metaik.stewart import Mechanism, Verdict
 from pin_metaik.stewart.conditioning import NORMS
-from pin_metaik.stewart.report import Lines, assess, at_pose, describe, outcome, values
+from pin_metaik.stewart.report import Lines, along, assess, at_pose, describe, outcome, values
 from pin_metaik.stewart.task import Index
 
 app = typer.Typer(
@@ -26,6 +27,7 @@ app = typer.Typer(
 File = Annotated[str, typer.Argument(help="A .toml file, or one of: " + ", ".join(stewart.mechanism_names()) + ".")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, in m and rad.")]
 Picture = Annotated[Path | None, typer.Option(help="Also draw it and its workspace: .png, .svg or .pdf.")]
+INTERRUPTED = 130  # what shells make of Ctrl-C
 INDICES = ", ".join(get_args(Index))
 
 
@@ -36,17 +38,28 @@ def analyse(
         tuple[float, float, float, float, float, float] | None,
         typer.Option(metavar="X Y Z R P Y", help="Also one pose: its unit of length, and degrees Rz(Y) Ry(P) Rx(R)."),
     ] = None,
+    to: Annotated[
+        tuple[float, float, float, float, float, float] | None,
+        typer.Option(metavar="X Y Z R P Y", help="Also the straight way from --pose to this pose."),
+    ] = None,
+    seconds: Annotated[float, typer.Option(help="How long that way takes.")] = 1.0,
     cells: Annotated[int | None, typer.Option(min=1, help="Cells along each axis, instead of the file's.")] = None,
     norm: Annotated[str | None, typer.Option(help=f"Instead of the file's: {', '.join(NORMS)}.")] = None,
     length: Annotated[str | None, typer.Option(help="Characteristic length: rm, best, or in its unit.")] = None,
     picture: Picture = None,
     as_json: Json = False,
 ) -> None:
-    """Workspace, dexterity and singularities. Exit code 0: regular, 1: singular poses in it, 2: makes no sense."""
+    """Workspace, dexterity and singularities. Ctrl-C keeps what was seen.
+
+    Exit code 0: regular, 1: singular poses in it, 2: makes no sense, 130: interrupted.
+    """
     mechanism = _measured(stewart.load_mechanism(file), norm, length)
     if cells is not None:
         mechanism = replace(mechanism, grid=replace(mechanism.grid, counts=(cells, cells, cells)))
     T = None if pose is None else _pose(mechanism, pose)
+    if to is not None and T is None:
+        raise InvalidTarget("a way needs both ends: give --pose as well as --to")
+    way = None if to is None or T is None else stewart.straight(T, _pose(mechanism, to), seconds)
     with stewart.progress_bar("surveying") as watch:
         workspace = mechanism.survey(watch=watch)
     if as_json:
@@ -55,9 +68,13 @@ def analyse(
         _show(mechanism.name, describe(mechanism))
         if T is not None:
             _show("at the pose", at_pose(mechanism, T))
+        if way is not None:
+            _show("along the way", along(mechanism, way))
         _show("workspace", assess(mechanism, workspace))
     if picture is not None:
         stewart.save_picture(stewart.draw(mechanism, workspace), picture)
+    if not workspace.complete:
+        raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if workspace.verdict is Verdict.REGULAR else 1)
 
 
@@ -80,7 +97,7 @@ def design(
 ) -> None:
     """Optimise its dimensions; options replace settings of the file. Ctrl-C keeps the best so far.
 
-    Exit code 0: a design was found, 1: none that can be built, 2: makes no sense.
+    Exit code 0: a design was found, 1: none that can be built, 2: makes no sense, 130: interrupted.
     """
     mechanism = stewart.load_mechanism(file)
     given = {
@@ -115,6 +132,8 @@ def design(
         stewart.save_mechanism(found.mechanism, output)
     if picture is not None and workspace is not None:
         stewart.save_picture(stewart.draw(found.mechanism, workspace), picture)
+    if found.interrupted:
+        raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if found.success else 1)
 
 

@@ -191,7 +191,8 @@ def descend_from(
     whole = tasks.shape[0] == 1 and rows.shape[0] == 6
     for j in range(6):
         whole = whole and tasks[0, 12 + j] == 0.0
-    x[:] = start
+    for c in range(x.shape[0]):
+        x[c] = min(max(start[c], lower[c]), upper[c])
     mark = np.inf
     found = False
     polish = POLISH

@@ -137,7 +137,9 @@ def search(
                 away += weights[9 * t + 3 + j] * (goal[9 * t + 3 + j] - scale * pose[3 * j]) ** 2
                 away += weights[9 * t + 6 + j] * (goal[9 * t + 6 + j] - scale * pose[3 * j + 2]) ** 2
         own = 0 if away <= distances[0] else TRIED
-    best[:] = starts[0]
+    lower, upper, _ = bounds
+    for c in range(best.shape[0]):
+        best[c] = min(max(starts[0, c], lower[c]), upper[c])
     spent = 0
     least = np.inf
     for k in range(tried + starts.shape[0]):

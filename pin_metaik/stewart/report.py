@@ -15,8 +15,8 @@ from pin_metaik.stewart.inverse import leg_lengths
 from pin_metaik.stewart.limits import PoseState
 from pin_metaik.stewart.mechanism import Mechanism
 from pin_metaik.stewart.poses import PoseLike, as_poses
-from pin_metaik.stewart.singularity import singularities
-from pin_metaik.stewart.trajectory import judge_poses
+from pin_metaik.stewart.singularity import crossings, singularities
+from pin_metaik.stewart.trajectory import Trajectory, follow, judge_poses
 from pin_metaik.stewart.workspace import Workspace
 
 Lines: TypeAlias = list[tuple[str, str]]
@@ -84,6 +84,24 @@ def at_pose(mechanism: Mechanism, pose: PoseLike) -> Lines:
     if len(distances):
         i, j = mechanism.geometry.pairs[distances.argmin()] + 1
         lines.append(("nearest legs", f"{i} and {j}, {in_unit(mechanism, distances.min())} apart"))
+    return lines
+
+
+def along(mechanism: Mechanism, way: Trajectory) -> Lines:
+    """The legs along a trajectory: their ranges and speeds, conditioning, and singular poses on the way."""
+    motion = follow(mechanism.geometry, way, mechanism.limits, mechanism.dexterity)
+    lines = [
+        ("time", f"{way.times[-1] - way.times[0]:.6g} s"),
+        ("shortest, longest", in_unit(mechanism, (motion.lengths.min(), motion.lengths.max()))),
+        ("fastest leg", f"{in_unit(mechanism, np.abs(motion.rates).max())}/s"),
+        ("lowest nu", f"{motion.nu.min():.4g}"),
+    ]
+    for state in PoseState:
+        if (share := float((motion.states == state).mean())) > 0.0:
+            lines.append(("way", f"{100 * share:6.2f} %  {state.words}"))
+    for crossing in crossings(mechanism.geometry, way):
+        what = "det J changes sign" if crossing.crosses else "singular"
+        lines.append((what, f"at {crossing.time:.6g} s, {in_unit(mechanism, crossing.pose[:3, 3])}"))
     return lines
 
 

@@ -1,4 +1,5 @@
 import builtins
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,8 +13,6 @@ PNG = b"\x89PNG"
 
 
 def with_grid(mechanism, **changes):
-    from dataclasses import replace
-
     return replace(mechanism, grid=Grid(**changes))
 
 
@@ -45,8 +44,6 @@ def test_orientations_and_singular_workspaces_are_drawn(tmp_path):
 
 
 def test_the_history_of_a_design_is_drawn(tmp_path):
-    from dataclasses import replace
-
     mechanism = stroke(50)
     found = design(replace(mechanism, task=replace(mechanism.task, evaluations=180)))
     figure = draw_history(found)

@@ -70,7 +70,7 @@ EXAMPLES = {
     "Example B": Example({"h": 10, "d1": 4, "l1": 5, "l2": 5, "l3": 5, "l4": 5}, (5, 5, 10), 100, 1000),
 }
 
-# Example B by PSO is the one result that is printed (Fig. 18); theta5 as -1.57 where the print has "-.157".
+# Example B by PSO (Fig. 18); theta5 as -1.57 where the print has "-.157".
 PRINTED_O, PRINTED_S = 0.386079, 0.946
 PRINTED_THETA = (0.19, -0.95, 1.90, 1.28, -1.57, 0.0)  # rad
 PRINTED_TIP = (5.0, 4.99, 10.02)
@@ -117,7 +117,10 @@ def sections(trials: Sequence[Trial], options: Options) -> list[Section]:
     return [
         Section(
             "GA and PSO",
-            ("O = p d^2, with p = 10 in Example A and 1000 in Example B. Only one result is printed.",),
+            (
+                "O = p d^2, with p = 10 in Example A and 1000 in Example B. The paper's result is that of its Fig. 18: "
+                "Example B by PSO.",
+            ),
             (table(trials),),
             convergence(
                 "puma_offset_convergence",

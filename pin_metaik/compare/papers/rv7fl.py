@@ -100,7 +100,7 @@ def sections(trials: Sequence[Trial], options: Options) -> list[Section]:
             "Hybrids: the seeder at a tenth of the budget, then damped least squares",
             (
                 f"Solved means to {SOLVED:g} mm. Case 1 lies on the inner wall of the reachable tube, where the "
-                "Jacobian is singular and damped least squares slow down; the other two they solve to rounding.",
+                "Jacobian is singular and damped least squares slow down.",
             ),
             (hybrids("rv7fl_hybrids", trials, "F mm"),),
         ),
@@ -140,7 +140,9 @@ def versus(method: str, trials: Sequence[Trial], budgets: Mapping[str, int]) -> 
         if (case, name, budgets[name]) in PRINTED
     }
     theirs = f"; in the paper: {record(method, printed)}" if printed.keys() >= best.keys() else ""
-    against = f"{method} with {budgets[method]:,} evaluations, against GWO with {budgets['GWO']:,}"
+    against = (
+        f"{method[0].upper()}{method[1:]} with {budgets[method]:,} evaluations, against GWO with {budgets['GWO']:,}"
+    )
     return f"{against}: {record(method, best)}{theirs}."
 
 

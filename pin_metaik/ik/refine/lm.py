@@ -21,7 +21,7 @@ FLOOR = 1e-9  # of the damping: at a singular pose J J' alone cannot be solved w
 
 @dataclass(frozen=True)
 class LM:
-    """Levenberg-Marquardt, dx = -(J'J + W_n)^-1 J'r with W_n = w E, clipped at the limits.
+    """Levenberg-Marquardt, dx = -(J'J + W_n)^-1 J'r with W_n = w 1, clipped at the limits.
 
     With E = |r|^2 / 2 the damping w is, as in the Robotics Toolbox,
 
@@ -31,7 +31,7 @@ class LM:
 
     Attributes:
         rule: How to choose the damping.
-        scale: The constant of the rule, 1 for Chan, otherwise m^2 or rad^2 a rad^2; ``None``: 0.1, 1e-4 and 1e-4.
+        scale: The constant of the rule: 1/rad^2 for Chan, otherwise in the unit of J'J; ``None``: 0.1, 1e-4 and 1e-4.
         patience: When a start is given up.
     """
 
@@ -66,7 +66,7 @@ class LM:
 
 
 def damped(r: NDArray[np.float64], J: NDArray[np.float64], w: float) -> NDArray[np.float64]:
-    """dx (n,) = -J'(J J' + w E)^-1 r, which is -(J'J + w E)^-1 J'r from the smaller system."""
+    """dx (n,) = -J'(J J' + w 1)^-1 r, which is -(J'J + w 1)^-1 J'r from the smaller system."""
     H = J @ J.T
     H.flat[:: len(r) + 1] += w
     dx: NDArray[np.float64] = -(J.T @ np.linalg.solve(H, r))

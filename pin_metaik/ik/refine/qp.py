@@ -121,7 +121,7 @@ def _coordinates(posture: object) -> tuple[float, ...]:
 
 
 def null_space(J: NDArray[np.float64], w: float) -> NDArray[np.float64]:
-    """The projection N (n, n) = E - J'(J J' + w E)^-1 J into the null space of J (m, n), w keeping it regular."""
+    """The projection N (n, n) = 1 - J'(J J' + w 1)^-1 J into the null space of J (m, n), w keeping it regular."""
     H = J @ J.T
     H.flat[:: len(J) + 1] += w
     N: NDArray[np.float64] = np.eye(J.shape[1]) - J.T @ np.linalg.solve(H, J)

@@ -17,7 +17,7 @@ ZERO = 1e-10  # singular values below it have no direction to damp
 
 @dataclass(frozen=True)
 class SDLS:
-    """Selectively damped least squares (Buss and Kim 2005, Section 4), clipped at the limits.
+    """Selectively damped least squares (Buss and Kim 2005), clipped at the limits.
 
     The paper places end effectors; here each position and each orientation of a frame counts as one of them.
 

@@ -16,7 +16,7 @@ from pin_metaik.ik.refine.protocol import Refinement
 class Transpose:
     """Jacobian transpose, dx = -alpha J'r (Wolovich and Elliott 1984), clipped at the limits.
 
-    alpha minimises |r + J dx| (Buss 2004, Eq. 7). It needs no inverse and never overshoots far, and it converges only
+    alpha minimises |r + J dx| (Buss 2004). It needs no inverse and never overshoots far, and it converges only
     linearly: hundreds of steps where J is ill-conditioned.
 
     Attributes:

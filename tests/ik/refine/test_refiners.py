@@ -64,10 +64,7 @@ def test_limits_that_bind_are_kept(name: str) -> None:
         assert problem.limits.contains(refinement.x)
 
 
-UNCLIPPED = pytest.mark.xfail(reason="DLS leaves clipping to the solver; a start may come back as it was given")
-
-
-@pytest.mark.parametrize("name", [pytest.param(name, marks=UNCLIPPED if name == "dls" else ()) for name in REFINERS])
+@pytest.mark.parametrize("name", REFINERS)
 def test_starts_outside_the_limits_are_brought_inside(name: str) -> None:
     problem = out_of_the_way()
     for start in np.random.default_rng(0).uniform(-20.0, 20.0, (10, problem.chain.n)):

@@ -1,0 +1,235 @@
+"""What the mobile planners take and reach, longer than the tests can wait for.
+
+    pip install -e '.[mobile]'
+    python benchmarks/mobile.py [--runs 20] [--seeds 5] [--out benchmarks/mobile.md]
+
+Half an hour with the defaults; ``--runs 3 --seeds 1 --iterations 300`` is a minute. Times are processor time of this
+process, so that a busy machine does not count; ratios mean more than digits.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import os
+import platform
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from statistics import median
+
+import numpy as np
+import shapely
+
+from pin_metaik import mobile
+from pin_metaik.learn import fit
+from pin_metaik.mobile.motion.learned import learn_turn
+from pin_metaik.mobile.motion.turn import lead_time
+from pin_metaik.mobile.motion.turn_data import clustered_points, coarse_grid, fine_grid, judging_points
+from pin_metaik.optimize import Budget
+from pin_metaik.optimize.de import DE
+from pin_metaik.optimize.ga import GA
+from pin_metaik.optimize.pso import PSO
+
+GAP = 0.75  # m between obstacles: the Nomad 200 with a margin of 0.1 m fits through most
+
+
+def cpu(work: Callable[[], object], repeats: int = 5) -> float:
+    """Median processor time of one call, ms, after one that may compile."""
+    work()
+    times = []
+    for _ in range(repeats):
+        began = time.process_time()
+        work()
+        times.append(1e3 * (time.process_time() - began))
+    return median(times)
+
+
+def table(heading: list[str], rows: list[list[object]]) -> str:
+    lines = [heading, ["---"] + ["---:"] * (len(heading) - 1), *rows]
+    return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
+
+
+def exact_times() -> Iterator[str]:
+    rows = []
+    for count in (15, 50, 150, 500):
+        scene = mobile.random_scene(count, 0)
+        for radius in (0.0, 0.03):
+            problem = mobile.PathProblem.of(scene, radius)
+            whole = cpu(lambda scene=scene, radius=radius: mobile.plan_path(mobile.PathProblem.of(scene, radius)))
+            graph = problem.visibility
+            again = cpu(lambda p=problem: mobile.shortest_path(p.space, p.scene.start, p.scene.goal, p.visibility))
+            k_best = cpu(lambda p=problem: p.alternatives(5), 3)
+            corners, edges = len(graph.border.corners), int(graph.mutual.sum()) // 2
+            rows.append([count, radius, corners, edges, *(f"{ms:.1f}" for ms in (whole, again, k_best))])
+    yield "## The exact planner\n"
+    yield "ms from the polygons to a proven path; for another start and goal in the same world; for five alternatives.\n"
+    heading = ["polygons", "radius", "corners", "edges", "from polygons", "another query", "5 alternatives"]
+    yield table(heading, rows)
+
+
+def planners(runs: int) -> Iterator[str]:
+    contenders = {
+        "GA (Table 2)": GA(agents=50, crossover_rate=0.9, mutation_rate=0.4),
+        "GA tournament, blend": GA(agents=50, crossover_rate=0.9, selection="tournament", crossover="blend"),
+        "PSO (Table 2)": PSO(agents=50, variant="inertia", c1=2.0, c2=2.0, w_max=1.2, w_min=0.4, v_max=0.1),
+        "PSO constriction": PSO(agents=50),
+        "DE rand/1": DE(agents=50),
+        "DE best/1": DE(agents=50, strategy="best/1/bin"),
+        **{name: name for name in ("mtde", "gwo", "igwo", "sfla", "qpso", "cmaes")},
+    }
+    scenes = {name: mobile.load_scene(name) for name in ("ten_obstacles", "fifteen_obstacles")}
+    scenes |= {f"random:{seed}": mobile.random_scene(15, seed, start=(0.1, 0.1), goal=(8.5, 8)) for seed in range(10)}
+    problems = {name: mobile.PathProblem.of(scene) for name, scene in scenes.items()}
+    rows = []
+    for label, method in contenders.items():
+        gaps: list[float] = []
+        medians, free, spent = [], 0, 0.0
+        for problem in problems.values():
+            began = time.process_time()
+            plans = [mobile.plan_path(problem, method, fitness="paper", rng=run) for run in range(runs)]
+            spent += time.process_time() - began
+            found = [plan.gap for plan in plans if plan.gap is not None]
+            free += len(found)
+            gaps += found
+            medians += [median(found)] if found else []
+        total = runs * len(problems)
+        cells = [min(gaps), median(gaps), max(medians)] if gaps else []
+        rows.append(
+            [label, f"{100 * free / total:.0f}", *(f"{100 * gap:.2f}" for gap in cells), f"{1e3 * spent / total:.0f}"]
+        )
+    yield "## Metaheuristics over five via points, the paper's fitness, 5,000 evaluations\n"
+    yield f"{len(problems)} scenes, {runs} runs each; gaps in percent to the shortest path over the runs that are free.\n"
+    yield table(["planner", "free %", "best gap", "median gap", "worst scene's median", "ms a run"], rows)
+
+    problem, rows = problems["ten_obstacles"], []
+    for label, method in (("GA", GA(agents=100, mutation_rate=0.1)), ("PSO", contenders["PSO (Table 2)"])):
+        for budget in (10_000, 100_000):
+            plans = [
+                mobile.plan_path(problem, method, fitness="paper", via=2, budget=Budget(evaluations=budget), rng=run)
+                for run in range(8)
+            ]
+            rows.append(
+                [label, f"{budget:,}", ", ".join(f"{100 * plan.gap:.2f}" for plan in plans if plan.gap is not None)]
+            )
+    others = [100 * (path.length / problem.optimum.length - 1) for path in problem.alternatives(10)]
+    yield "\n\nTen times the evaluations on ten_obstacles, two via points, gaps of eight runs in percent:\n"
+    yield table(["planner", "evaluations", "gaps"], rows)
+    yield (
+        "\n\nThe shortest paths of the ten best homotopy classes are "
+        + ", ".join(f"{gap:.2f}" for gap in others)
+        + " percent above the optimum: a search that ends on one of these is stuck on the wrong side of an obstacle."
+    )
+
+
+def trajectories(scenes: int) -> Iterator[str]:
+    rows, seed = [], 0
+    worst_clearance, worst_end = np.inf, 0.0
+    while len(rows) < scenes:
+        scene = mobile.random_scene(15, seed, gap=GAP)
+        seed += 1
+        try:
+            problem = mobile.PathProblem.of(scene, mobile.NOMAD_200.radius, 0.1)
+            path = problem.optimum
+        except mobile.NoPath:
+            continue
+        dp = mobile.plan_trajectory(path, obstacles=scene.obstacles)
+        de = mobile.plan_trajectory(path, obstacles=scene.obstacles, method="de")
+        fast = mobile.fastest_trajectory(scene)
+        ms = cpu(lambda p=path, s=scene: mobile.plan_trajectory(p, obstacles=s.obstacles))
+        worst_clearance = min(worst_clearance, *(plan.clearance - plan.radius for plan in (dp, de, fast)))
+        worst_end = max(worst_end, *(plan.end_error for plan in (dp, de, fast)))
+        assert dp.success and de.success and fast.success
+        times = (dp.stop_and_turn, dp.time, 100 * (de.time / dp.time - 1), fast.time)
+        rows.append([seed - 1, len(dp.v), *(f"{value:.3f}" for value in times), f"{ms:.1f}"])
+    yield "\n\n## Trajectories of the Nomad 200 through 15 random obstacles\n"
+    yield (
+        "Times in s with stops and by dynamic programming; percent that differential evolution is above it; the "
+        "fastest over three paths and four margins; ms of processor time to plan.\n"
+    )
+    yield table(["scene", "corners", "stops", "dp", "de above %", "fastest", "ms"], rows)
+    yield (
+        f"\n\nLeast clearance beyond the radius: {worst_clearance:.1e} m. Largest distance of an end from its goal: "
+        f"{worst_end:.1e} m."
+    )
+
+
+def networks(seeds: int, iterations: int) -> Iterator[str]:
+    vehicle = mobile.NOMAD_200
+    began = time.process_time()
+    fcm = clustered_points(vehicle, iterations=150).centres
+    clustering = time.process_time() - began
+    rows = []
+    for hidden in ((5,), (5, 5)):
+        for name, points in (("grid", coarse_grid(vehicle)), ("fcm", fcm)):
+            began = time.process_time()
+            models = [
+                learn_turn(vehicle, design="paper", hidden=hidden, points=points, iterations=iterations, rng=seed)
+                for seed in range(seeds)
+            ]
+            seconds = (time.process_time() - began) / seeds
+            errors = [model.errors() for model in models]
+            E0 = sorted(e.E0 for e in errors)
+            cells = [f"{median(E0):.3f}", f"{E0[0]:.3f} .. {E0[-1]:.3f}", f"{median(e.F0 for e in errors):.4f}"]
+            cells += [f"{median(e.Fm for e in errors):.2f}", f"{median(m.regressor.training.mse for m in models):.1e}"]
+            rows.append([":".join(map(str, (2, *hidden, 1))), name, *cells, f"{seconds:.1f}"])
+    yield f"\n\n## Networks: Levenberg-Marquardt, {iterations:,} iterations, {seeds} starts, the paper's design\n"
+    yield (
+        "Errors over the 23,621 test vectors in percent, medians: E0 relative mean, F0 and Fm mean and largest share of "
+        "the longest tangent; training error; s a training.\n"
+    )
+    yield table(["net", "points", "E0", "E0 least .. most", "F0", "Fm", "mse", "s"], rows)
+    yield f"\n\nFuzzy c-means, 23,779 points, 1,064 centres, 150 iterations: {clustering:.0f} s, half a megabyte held.\n"
+
+    v, theta = coarse_grid(vehicle).T
+    X, y = np.column_stack((v, theta)), v * lead_time(theta, vehicle)
+    judged = judging_points(vehicle)
+    true = judged[:, 0] * lead_time(judged[:, 1], vehicle)
+    rows = []
+    for trainer in ("lm", "minpack", "bfgs", "scg", "rprop"):
+        began = time.process_time()
+        models = [fit(X, y, (5, 5), trainer, iterations, seed) for seed in range(seeds)]
+        seconds = (time.process_time() - began) / seeds
+        E0 = median(float(100 * np.mean(np.abs(m.predict(judged) - true) / true)) for m in models)
+        rows.append([trainer, f"{median(m.training.mse for m in models):.1e}", f"{E0:.3f}", f"{seconds:.1f}"])
+    yield "\nTrainers of 2:5:5:1 on the grid, the same starts:\n"
+    yield table(["trainer", "mse", "E0", "s"], rows)
+
+
+def tangents() -> Iterator[str]:
+    grid, vehicle = fine_grid(mobile.NOMAD_200), mobile.NOMAD_200
+    closed = cpu(lambda: grid[:, 0] * lead_time(grid[:, 1], vehicle), 20)
+    yield f"\n\n## The closed form\n\n23,779 tangent lengths take {closed:.2f} ms.\n"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--runs", type=int, default=20)
+    parser.add_argument("--scenes", type=int, default=10)
+    parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--iterations", type=int, default=3000)
+    parser.add_argument("--out", type=Path)
+    options = parser.parse_args()
+    parts = [
+        "# Mobile planners\n",
+        f"`python benchmarks/mobile.py --runs {options.runs} --scenes {options.scenes} --seeds {options.seeds} "
+        f"--iterations {options.iterations}`, {datetime.date.today()}, {os.cpu_count()}-core {platform.machine()}, "
+        f"shapely {shapely.__version__}.\n",
+    ]
+    for part in (
+        exact_times(),
+        planners(options.runs),
+        trajectories(options.scenes),
+        networks(options.seeds, options.iterations),
+        tangents(),
+    ):
+        for text in part:
+            print(text, flush=True)
+            parts.append(text)
+        parts.append("")
+    if options.out is not None:
+        options.out.write_text("\n".join(parts).replace("\n\n\n", "\n\n") + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
