@@ -20,26 +20,26 @@ from ik_serial import SerialArm
 
 
 def measured(solver: Solver, poses: list[Any], starts: list[Any]) -> dict[str, list[Any]]:
-    """Answers to targets, and what each took in ns, on the wall and of processor time (all threads).
+    """Answers to targets, and what each took in ns: on the wall, and its share of all threads' processor time.
 
-    The last target is solved once more, before the clock runs: that brings code and tables back into the caches after
-    another solver has had the machine.
+    Processor time is read once for all, because reading it takes a while and the caches with it. The last target is
+    solved once more, before the clocks run: that brings code and tables back after another solver has had the machine.
     """
     goals = [solver.goal(np.array(pose)) for pose in poses]
     begins = [solver.start(np.array(x)) for x in starts]
-    wall, cpu, found = [], [], []
+    wall, found = [], []
     solver.solve(goals[-1], begins[-1])
+    cpu = time.process_time_ns()
     for goal, begin in zip(goals, begins, strict=True):
-        w, c = time.perf_counter_ns(), time.process_time_ns()
+        began = time.perf_counter_ns()
         answer = solver.solve(goal, begin)
-        c, w = time.process_time_ns() - c, time.perf_counter_ns() - w
-        wall.append(w)
-        cpu.append(c)
+        wall.append(time.perf_counter_ns() - began)
         found.append(answer)
+    cpu = time.process_time_ns() - cpu
     answers = [solver.answer(answer) for answer in found]
     return {
         "wall": wall,
-        "cpu": cpu,
+        "cpu": [cpu / max(1, len(wall))] * len(wall),
         "x": [None if a.x is None else np.asarray(a.x, dtype=float).tolist() for a in answers],
         "evaluations": [a.evaluations for a in answers],
         "status": [a.status for a in answers],

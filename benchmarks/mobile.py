@@ -63,7 +63,7 @@ def exact_times() -> Iterator[str]:
             corners, edges = len(graph.border.corners), int(graph.mutual.sum()) // 2
             rows.append([count, radius, corners, edges, *(f"{ms:.1f}" for ms in (whole, again, k_best))])
     yield "## The exact planner\n"
-    yield "ms from the polygons to a proven path; for another start and goal in the same world; for five alternatives.\n"
+    yield "ms from the polygons to a proven path; for another query in the same world; for five alternatives.\n"
     heading = ["polygons", "radius", "corners", "edges", "from polygons", "another query", "5 alternatives"]
     yield table(heading, rows)
 
@@ -99,7 +99,7 @@ def planners(runs: int) -> Iterator[str]:
             [label, f"{100 * free / total:.0f}", *(f"{100 * gap:.2f}" for gap in cells), f"{1e3 * spent / total:.0f}"]
         )
     yield "## Metaheuristics over five via points, the paper's fitness, 5,000 evaluations\n"
-    yield f"{len(problems)} scenes, {runs} runs each; gaps in percent to the shortest path over the runs that are free.\n"
+    yield f"{len(problems)} scenes, {runs} runs each; gaps to the shortest path in percent, of free runs.\n"
     yield table(["planner", "free %", "best gap", "median gap", "worst scene's median", "ms a run"], rows)
 
     problem, rows = problems["ten_obstacles"], []
@@ -112,13 +112,16 @@ def planners(runs: int) -> Iterator[str]:
             rows.append(
                 [label, f"{budget:,}", ", ".join(f"{100 * plan.gap:.2f}" for plan in plans if plan.gap is not None)]
             )
-    others = [100 * (path.length / problem.optimum.length - 1) for path in problem.alternatives(10)]
+    others = [
+        f"{100 * (path.length / problem.optimum.length - 1):.2f} ({len(path.corners)})"
+        for path in problem.alternatives(10)
+    ]
     yield "\n\nTen times the evaluations on ten_obstacles, two via points, gaps of eight runs in percent:\n"
     yield table(["planner", "evaluations", "gaps"], rows)
     yield (
-        "\n\nThe shortest paths of the ten best homotopy classes are "
-        + ", ".join(f"{gap:.2f}" for gap in others)
-        + " percent above the optimum: a search that ends on one of these is stuck on the wrong side of an obstacle."
+        f"\n\nThe shortest paths of the best homotopy classes are {', '.join(others)} percent above the optimum, in "
+        "brackets their corners. A search that ends there is on the wrong side of an obstacle; with two via points it "
+        "cannot quite follow a path of three corners."
     )
 
 
@@ -175,11 +178,11 @@ def networks(seeds: int, iterations: int) -> Iterator[str]:
             rows.append([":".join(map(str, (2, *hidden, 1))), name, *cells, f"{seconds:.1f}"])
     yield f"\n\n## Networks: Levenberg-Marquardt, {iterations:,} iterations, {seeds} starts, the paper's design\n"
     yield (
-        "Errors over the 23,621 test vectors in percent, medians: E0 relative mean, F0 and Fm mean and largest share of "
-        "the longest tangent; training error; s a training.\n"
+        "Errors over the 23,621 test vectors in percent, medians: E0 relative mean, F0 and Fm mean and largest share "
+        "of the longest tangent; training error; s a training.\n"
     )
     yield table(["net", "points", "E0", "E0 least .. most", "F0", "Fm", "mse", "s"], rows)
-    yield f"\n\nFuzzy c-means, 23,779 points, 1,064 centres, 150 iterations: {clustering:.0f} s, half a megabyte held.\n"
+    yield f"\n\nFuzzy c-means of 23,779 points to 1,064 centres, 150 iterations: {clustering:.0f} s.\n"
 
     v, theta = coarse_grid(vehicle).T
     X, y = np.column_stack((v, theta)), v * lead_time(theta, vehicle)

@@ -43,6 +43,7 @@ def jit(signature: str) -> Callable[[F], F]:
         def call(*arguments: Any) -> Any:
             return compiled()(*arguments)
 
+        call.compiled = compiled  # type: ignore[attr-defined]  # for whoever calls so often that one more frame counts
         return cast(F, call)
 
     return lazy

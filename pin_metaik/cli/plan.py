@@ -6,7 +6,6 @@ import json
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -85,12 +84,7 @@ def plan(
             seeded=seeded,
             callback=tick,
         )
-    plans = [path]
-    if paths > 1:
-        plans = [
-            replace(path, path=line, cost=line.length, status=_status(line, path))
-            for line in problem.alternatives(paths)
-        ]
+    plans = mobile.plan_alternatives(problem, paths) if paths > 1 else [path]
     motions = [_motion(each, robot, keep, trajectory, rng) for each in plans] if trajectory and path.success else []
     best = min(range(len(motions)), key=lambda i: (not motions[i].success, motions[i].time), default=0)
     motion = motions[best] if motions else None
@@ -116,14 +110,8 @@ def _scene(source: str, start: Place, goal: Place, clearance: float) -> Scene:
     seed, _, count = source.removeprefix(RANDOM).partition(":")
     if not seed.isdigit() or not (count or "15").isdigit():
         raise InvalidSetting(f"a random scene is random:SEED or random:SEED:OBSTACLES, not {source!r}")
-    gap = 0.1 + 2 * clearance  # the robot fits through everywhere
+    gap = 0.1 + 2 * clearance  # with round joins the robot fits through everywhere
     return mobile.random_scene(int(count or 15), int(seed), gap=gap, start=start, goal=goal)
-
-
-def _status(line: Any, shortest: PathPlan) -> Any:
-    from pin_metaik.mobile import PathStatus
-
-    return PathStatus.OPTIMAL if line.length <= shortest.length else PathStatus.FREE
 
 
 def _motion(plan: PathPlan, robot: SynchroDrive, radius: float, method: str, rng: int) -> TrajectoryPlan:

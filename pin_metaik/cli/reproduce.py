@@ -23,20 +23,24 @@ WIDE = 150  # columns for files and pipes, which have no width
 
 def reproduce(
     name: Annotated[str, typer.Argument(help=f"One of {', '.join(PAPERS)}.")],
-    runs: Annotated[int | None, typer.Option(min=1, help="Runs of each method; default: as the paper.")] = None,
+    runs: Annotated[int | None, typer.Option(min=1, help="Runs of each method; default: the paper's number.")] = None,
     quick: Annotated[
         bool, typer.Option("--quick", help=f"Leave out what takes long; {QUICK_RUNS} runs if not told.")
     ] = False,
     long: Annotated[bool, typer.Option("--long", help="Run what takes hours, too.")] = False,
-    out: Annotated[Path | None, typer.Option(help="Folder for Markdown, CSV files and figures.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(file_okay=False, help="Folder for Markdown, CSV files and figures.")
+    ] = None,
     figures: Annotated[bool, typer.Option(help="Draw figures into --out; needs the extra plots.")] = True,
     rng: Annotated[int, typer.Option(min=0, help="Seed of everything random.")] = 0,
 ) -> None:
     """Run a paper's experiment again: its numbers and ours side by side. Ctrl-C keeps what is done."""
     if name not in PAPERS:
         raise UnknownName("paper", name, PAPERS)
-    if out is not None and figures:
-        need_figures()
+    if out is not None:
+        if figures:
+            need_figures()
+        out.mkdir(parents=True, exist_ok=True)
     paper = PAPERS[name]
     options = Options(runs or (min(QUICK_RUNS, paper.runs) if quick else paper.runs), quick, long, rng)
     console = Console(width=None if sys.stdout.isatty() else WIDE)

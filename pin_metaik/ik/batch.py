@@ -151,7 +151,7 @@ def _judge(
         orientation[:] = 0.0
     batch.position_error[part], batch.orientation_error[part] = position, orientation
     batch.evaluations[part] = ended[:, 0]
-    met = (position <= tolerances[0]) & (orientation <= tolerances[1]) & [chain.holds(one) for one in q]
+    met = (position <= tolerances[0]) & (orientation <= tolerances[1]) & (chain.inside(q) == q).all(axis=1)
     batch.success[part] = met
     batch.status[part] = IKStatus.SOLVED
     return np.arange(part.start, part.stop)[~met]
@@ -214,7 +214,7 @@ def _bases(chain: Chain, q0: ArrayLike | None, k: int) -> NDArray[np.float64]:
         return np.repeat(chain.reference[None], k, axis=0)
     given = np.asarray(q0, dtype=float)
     if given.ndim == 2 and given.shape == (k, chain.model.nq):
-        return np.array([chain.configuration(one) for one in given]).reshape(k, chain.model.nq)
+        return chain.inside(given)
     if given.ndim == 2:
         raise InvalidConfiguration(f"q0 for {k} targets has shape ({k}, {chain.model.nq}), got {given.shape}")
     return np.repeat(chain.configuration(given)[None], k, axis=0)

@@ -34,10 +34,14 @@ def run_lane(
     q0: NDArray[np.float64],
     q: NDArray[np.float64],
 ) -> NDArray[np.int64]:
-    """Solve poses (k, 4, 4) from q0 (k, nq) into q (k, nq); returns (k, 2): evaluations, and how each ended."""
+    """Solve poses (k, 4, 4) from q0 (k, nq) into q (k, nq); returns (k, 2): evaluations, and how each ended.
+
+    The loop writes nothing into q that is outside the limits; how near q is remains for Pinocchio to say.
+    """
     ended = np.empty((len(q), 2), np.int64)
-    chain.kernels.solve_poses(
-        *chain.lane,
+    solve_poses, *given = chain.lane
+    solve_poses(
+        *given,
         starts,
         dls.damping,
         PROGRESS,
@@ -83,7 +87,7 @@ def solve_fast(
     if end not in (chain.kernels.SOLVED, chain.kernels.UNSOLVED):
         return None
     position, orientation = errors(chain, goal, q[0], tolerances)
-    if position > tolerances[0] or orientation > tolerances[1] or not chain.holds(q[0]):
+    if position > tolerances[0] or orientation > tolerances[1]:
         return Refinement(chain.x(q[0]), False, spent)
     return IKResult(
         q[0],

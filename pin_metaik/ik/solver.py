@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from time import perf_counter
 
 import numpy as np
@@ -129,13 +130,13 @@ class IKSolver:
             best = found[np.argmin(measure(problem, found, x0))]
             ledger.x, ledger.met = slide(problem, best, x0, measure), True
 
-    @property
+    @cached_property
     def fast(self) -> DLS | None:
-        """The refiner, if this is the automatic solver, whose first step a compiled batch can take for many targets."""
+        """The refiner, if this is the automatic solver, whose first step the fast lane can take."""
         automatic = self.seeder == "auto" and self.select == "first" and self.budget.seconds is None
         return self._refiner if automatic and isinstance(self._refiner, DLS) else None
 
-    @property
+    @cached_property
     def first_evaluations(self) -> int:
         """Evaluations that the automatic solver spends on restarts before it turns to a seeder."""
         return ENDLESS if self.budget.evaluations is None else math.ceil(RESTART_SHARE * self.budget.evaluations)

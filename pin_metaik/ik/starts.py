@@ -25,7 +25,7 @@ def start_batches(
     for index in itertools.count(tried):
         starts = drawn(chain, rng, index, BATCH if index else FIRST)
         if index == 0:
-            starts[0] = x0
+            starts = np.concatenate([x0[None], starts[1:]])
         if count is not None:
             starts = starts[: count - given]
         given += len(starts)
@@ -35,7 +35,7 @@ def start_batches(
 
 
 def drawn(chain: Chain, rng: Rng, index: int, size: int) -> NDArray[np.float64]:
-    """One batch of starts, the caller's own: from a generator, or the same for the same seed and index."""
+    """One batch of starts, not to be written to: from a generator, or the same for the same seed and index."""
     if isinstance(rng, np.random.Generator):
         return chain.box.sample(rng, size)
     return chain.sample(size, (DEFAULT_SEED if rng is None else rng, index))

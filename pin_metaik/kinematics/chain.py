@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from functools import cached_property
 from threading import local
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -131,8 +132,11 @@ class Chain:
         Raises:
             InvalidConfiguration: If its length is not nq or an entry is not finite.
         """
-        configuration = as_configuration(self.model, q)
-        return np.minimum(np.maximum(configuration, self._least), self._most)
+        return self.inside(as_configuration(self.model, q))
+
+    def inside(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The nearest configurations inside the limits to q (..., nq); pairs and quaternions are left alone."""
+        return np.minimum(np.maximum(q, self._least), self._most)
 
     @cached_property
     def box(self) -> Box:
@@ -150,28 +154,28 @@ class Chain:
         return chart(X, self.poses(X))
 
     @cached_property
-    def lane(self) -> tuple[object, ...]:
-        """What the fast lane's loop takes of a chain with one frame."""
+    def lane(self) -> tuple[Any, ...]:
+        """The fast lane's loop, and what it takes of a chain with one frame."""
         coordinates, joints = self.coordinates, self.model.joints
         places = [(joints[int(j)].idx_q, joints[int(j)].nq == 2) for j in coordinates.joints]
         places_of = np.array(places, dtype=np.int64)
-        return *self.paths.arrays, *self.limits.arrays, *self.atlas.arrays, self._least, self._most, places_of
-
-    @cached_property
-    def _entry_pairs(self) -> list[tuple[float, float]]:
-        return list(zip(self._least.tolist(), self._most.tolist(), strict=True))
-
-    def holds(self, q: NDArray[np.float64]) -> bool:
-        """Whether every joint of a configuration q (nq,) is inside its limits."""
-        return all(low <= v <= high for (low, high), v in zip(self._entry_pairs, q.tolist(), strict=True))
+        return (
+            self.kernels.solve_poses.compiled(),
+            *self.paths.arrays,
+            *self.limits.arrays,
+            *self.atlas.arrays,
+            self._least,
+            self._most,
+            places_of,
+        )
 
     def sample(self, count: int, seed: tuple[int, ...]) -> NDArray[np.float64]:
-        """Coordinates (count, n) drawn uniformly from the box; the same for the same seed, and then at no cost."""
+        """Coordinates (count, n) drawn uniformly from the box; one array for a seed, so not to be written to."""
         if (count, seed) not in self._samples:
             if len(self._samples) == REMEMBERED:
                 self._samples.clear()
             self._samples[count, seed] = self.box.sample(np.random.default_rng(seed), count)
-        return self._samples[count, seed].copy()
+        return self._samples[count, seed]
 
     def reach(self, tip: int, oriented: bool) -> Reach:
         """Bounds on how far tip number ``tip`` gets, for targets with or without a full orientation."""

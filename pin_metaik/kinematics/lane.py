@@ -122,4 +122,4 @@ def solve_poses(
             if places[c, 1] == 1:
                 q[i, e], q[i, e + 1] = math.cos(best[c]), math.sin(best[c])
             else:
-                q[i, e] = best[c]
+                q[i, e] = min(max(best[c], least[e]), most[e])

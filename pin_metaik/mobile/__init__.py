@@ -19,15 +19,18 @@ from pin_metaik.mobile.body import configurations, mobile_robot, velocities
 from pin_metaik.mobile.errors import Blocked, NoPath
 from pin_metaik.mobile.motion.fastest import fastest_trajectory
 from pin_metaik.mobile.motion.learned import LearnedTurn, learn_turn
+from pin_metaik.mobile.motion.result import TrajectoryPlan
 from pin_metaik.mobile.motion.route import Route
-from pin_metaik.mobile.motion.timing import TrajectoryPlan, plan_trajectory
+from pin_metaik.mobile.motion.timing import plan_trajectory
 from pin_metaik.mobile.motion.trajectory import Samples, Trajectory
 from pin_metaik.mobile.motion.vehicle import NOMAD_200, NOMAD_200_DRIVER, VEHICLES, SynchroDrive, load_vehicle
 from pin_metaik.mobile.paths.exact import shortest_path
 from pin_metaik.mobile.paths.fitness import FITNESSES, ExactFitness, Fitness, PaperFitness
 from pin_metaik.mobile.paths.homotopy import shortest_paths
 from pin_metaik.mobile.paths.path import Path
-from pin_metaik.mobile.paths.planning import PathPlan, PathProblem, PathStatus, plan_path
+from pin_metaik.mobile.paths.planning import plan_alternatives, plan_path
+from pin_metaik.mobile.paths.problem import PathProblem
+from pin_metaik.mobile.paths.result import PathPlan, PathStatus
 from pin_metaik.mobile.paths.visibility import Visibility
 from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.grids import OccupancyGrid, grid_of, read_grid
@@ -66,6 +69,7 @@ __all__ = [
     "load_scene",
     "load_vehicle",
     "mobile_robot",
+    "plan_alternatives",
     "plan_path",
     "plan_trajectory",
     "random_scene",

@@ -8,7 +8,6 @@ from numpy.testing import assert_allclose
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.learn import OutsideTraining
 from pin_metaik.mobile import NOMAD_200, learn_turn, plan_trajectory
-from pin_metaik.mobile.motion.learned import turn_errors
 from pin_metaik.mobile.motion.turn import lead_time
 from pin_metaik.mobile.motion.turn_data import (
     chebyshev_points,
@@ -18,6 +17,7 @@ from pin_metaik.mobile.motion.turn_data import (
     judging_points,
     random_points,
 )
+from pin_metaik.mobile.motion.turn_errors import turn_errors
 from tests.mobile.routes import BOX, B, C
 
 

@@ -73,6 +73,8 @@ def test_holes_are_kept():
         ({"type": "Polygon", "coordinates": "nonsense"}, "not a GeoJSON Polygon"),
         ({"type": "FeatureCollection", "features": [{"type": "Feature", "geometry": None}]}, "feature 0 is GeoJSON"),
         ({"nothing": 1}, "GeoJSON of type None"),
+        ({"type": "FeatureCollection"}, "without a list of features"),
+        ({"type": "GeometryCollection", "geometries": [3]}, "geometry 0 is GeoJSON of type 3"),
         ("missing.geojson", "cannot read missing.geojson"),
         (7, "give vertices"),
     ],

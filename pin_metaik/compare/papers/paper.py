@@ -57,7 +57,7 @@ class Paper(Generic[Done]):
         name: What it is called on the command line.
         title: What is done, one line.
         source: Where it was published.
-        runs: The runs it made of every method on every case.
+        runs: Its runs of every method on every case; ours where it does not say.
         jobs: The work, in order, the short jobs first.
         sections: The report on the jobs that were done: all of them, or fewer after Ctrl-C, possibly none.
     """

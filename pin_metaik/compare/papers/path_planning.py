@@ -135,7 +135,7 @@ def claims(trials: Sequence[PathTrial]) -> Iterator[str]:
     )
     yield (
         f"Claim: PSO is faster. Here GA takes {min(quicker):.2f} to {max(quicker):.2f} times as long for as many "
-        "evaluations: a matter of how the wheel is spun, not of the method."
+        "evaluations. An evaluation costs both the same; the rest is how their bookkeeping is written."
     )
 
 

@@ -6,9 +6,10 @@ from collections.abc import Iterable
 
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.errors import Blocked, NoPath
-from pin_metaik.mobile.motion.timing import TrajectoryPlan, plan_trajectory
+from pin_metaik.mobile.motion.result import TrajectoryPlan
+from pin_metaik.mobile.motion.timing import plan_trajectory
 from pin_metaik.mobile.motion.vehicle import NOMAD_200, SynchroDrive
-from pin_metaik.mobile.paths.planning import PathProblem
+from pin_metaik.mobile.paths.problem import PathProblem
 from pin_metaik.mobile.world.growth import Join
 from pin_metaik.mobile.world.scene import Scene
 

@@ -19,6 +19,7 @@ from pin_metaik.learn import OutsideTraining, Regressor, Trainer, fit
 from pin_metaik.learn.arrays import Array
 from pin_metaik.mobile.motion.turn import lead_time
 from pin_metaik.mobile.motion.turn_data import coarse_grid, judging_points
+from pin_metaik.mobile.motion.turn_errors import TurnErrors, turn_errors
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
 
 DesignName = Literal["paper", "log"]
@@ -45,27 +46,6 @@ DESIGNS: dict[str, Design] = {
     "paper": Design(lambda v, theta: np.column_stack((v, theta)), lambda a: a, lambda y: y),
     "log": Design(lambda v, theta: np.column_stack((np.log(v), np.sqrt(theta))), np.log, np.exp),
 }
-
-
-@dataclass(frozen=True)
-class TurnErrors:
-    """Errors of tangent lengths over a test set.
-
-    Attributes:
-        E0: Mean relative error, percent.
-        Em: Largest relative error, percent.
-        E5: Points with more than 5 percent.
-        F0: Mean error as a share of the longest tangent, percent.
-        Fm: Largest error as such a share, percent.
-        n: Points.
-    """
-
-    E0: float
-    Em: float
-    E5: int
-    F0: float
-    Fm: float
-    n: int
 
 
 @dataclass(frozen=True)
@@ -200,20 +180,6 @@ class LearnedCorners:
         """The errors at the speeds (n,) of a plan."""
         error = np.abs(self.tangents(v[None])[0] - v * self.g)
         return TurnReport(float(error.max(initial=0.0)), tuple(int(i) + 1 for i in np.flatnonzero(~self.known)))
-
-
-def turn_errors(predicted: Array, true: Array) -> TurnErrors:
-    """Errors of predicted tangent lengths (n,) against true ones (n,), none of them 0."""
-    relative = 100 * np.abs(predicted - true) / true
-    full = 100 * np.abs(predicted - true) / true.max()
-    return TurnErrors(
-        float(relative.mean()),
-        float(relative.max()),
-        int((relative > 5).sum()),
-        float(full.mean()),
-        float(full.max()),
-        len(true),
-    )
 
 
 def learn_turn(

@@ -3,28 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from enum import StrEnum
-from functools import cached_property
 from time import perf_counter
-from typing import Any
 
 import numpy as np
 
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.mobile.errors import NoPath
-from pin_metaik.mobile.paths.exact import shortest_path
 from pin_metaik.mobile.paths.fitness import Fitness, make_fitness
-from pin_metaik.mobile.paths.homotopy import shortest_paths
 from pin_metaik.mobile.paths.path import Path
-from pin_metaik.mobile.paths.visibility import Visibility
-from pin_metaik.mobile.world.freespace import FreeSpace
-from pin_metaik.mobile.world.growth import Join
+from pin_metaik.mobile.paths.problem import PathProblem
+from pin_metaik.mobile.paths.result import PathPlan, PathStatus
 from pin_metaik.mobile.world.scene import Scene
-from pin_metaik.optimize import ALGORITHMS, AskTell, Box, Budget, Metaheuristic, Status, make, minimize
+from pin_metaik.optimize import ALGORITHMS, AskTell, Budget, Metaheuristic, Status, make, minimize
 from pin_metaik.optimize.ga import GA
 from pin_metaik.optimize.pso import PSO
-from pin_metaik.optimize.settings import whole, within
+from pin_metaik.optimize.settings import whole
 from pin_metaik.optimize.space import Array
 
 EXACT = "exact"
@@ -36,164 +29,6 @@ PAPER_SETTINGS: dict[str, Metaheuristic] = {
 }
 PAPER_BUDGET = Budget(evaluations=50 * 100)
 PAPER_VIA = 5
-
-
-class PathStatus(StrEnum):
-    """Why a search for a path ended; only the first two are successes."""
-
-    OPTIMAL = "OPTIMAL"
-    """The shortest path of all, free of collisions."""
-    FREE = "FREE"
-    """Free of collisions; how far from the shortest is its gap."""
-    COLLIDES = "COLLIDES"
-    """The best that was found goes through an obstacle."""
-
-
-@dataclass(frozen=True, eq=False)
-class PathProblem:
-    """A scene with the clearance to keep, and what can be worked out once for all planners.
-
-    Attributes:
-        scene: The world, start and goal.
-        space: Its free space.
-    """
-
-    scene: Scene
-    space: FreeSpace
-
-    @staticmethod
-    def of(scene: Scene, radius: float = 0.0, margin: float = 0.0, join: Join = "mitre") -> PathProblem:
-        """A problem, checked.
-
-        Args:
-            scene: The world, start and goal.
-            radius: Of the robot, in the scene's unit.
-            margin: Distance to keep on top of that.
-            join: How grown obstacles end at their corners: ``mitre`` or ``round``.
-
-        Raises:
-            Blocked: The robot cannot be at the start or the goal.
-            InvalidSetting: A radius or margin below zero, or no such join.
-        """
-        within("radius", radius, 0)
-        within("margin", margin, 0)
-        space = FreeSpace.of(scene, radius + margin, join)
-        space.check("start", scene.start)
-        space.check("goal", scene.goal)
-        return PathProblem(scene, space)
-
-    @cached_property
-    def visibility(self) -> Visibility:
-        """The visibility graph of the free space."""
-        return Visibility(self.space)
-
-    @cached_property
-    def optimum(self) -> Path:
-        """The shortest path. Raises NoPath if there is none."""
-        return shortest_path(self.space, self.scene.start, self.scene.goal, self.visibility)
-
-    def alternatives(self, count: int) -> list[Path]:
-        """The shortest paths of the best homotopy classes, see ``shortest_paths``."""
-        return shortest_paths(self.space, self.scene.start, self.scene.goal, count, self.visibility)
-
-    def box(self, via: int) -> Box:
-        """Where via points may lie: the workspace inside its walls, once for each."""
-        x_min, y_min, x_max, y_max = self.space.box
-        return Box(np.tile([x_min, y_min], via), np.tile([x_max, y_max], via))
-
-    def through(self, x: Array) -> Path:
-        """The path through via points (2 n,)."""
-        return Path(np.vstack((self.scene.start, x.reshape(-1, 2), self.scene.goal)))
-
-
-@dataclass(frozen=True, eq=False)
-class PathPlan:
-    """The best path found, and how good it is.
-
-    Attributes:
-        path: From start to goal.
-        status: Whether it is the shortest, free, or not a path at all.
-        optimum: Length of the shortest path; None if there is no way.
-        cost: The fitness at the path; the exact planner's is its length.
-        method: Name of the planner.
-        evaluations: Paths whose fitness was computed; 0 for the exact planner.
-        seconds: Time taken, in s, without that for the optimum the gap is measured by.
-        seed: Of every random choice; None if a generator was handed in.
-        interrupted: Whether it was stopped by Ctrl-C or its callback.
-        problem: What was asked.
-        trace: Evaluations and best cost after each generation (g, 2), when asked for.
-    """
-
-    path: Path
-    status: PathStatus
-    optimum: float | None
-    cost: float
-    method: str
-    evaluations: int
-    seconds: float
-    seed: int | None
-    interrupted: bool
-    problem: PathProblem
-    trace: Array | None = None
-
-    @property
-    def length(self) -> float:
-        """Length of the path, free or not."""
-        return self.path.length
-
-    @property
-    def collision_free(self) -> bool:
-        """Whether the path keeps its clearance, by the exact test."""
-        return self.status is not PathStatus.COLLIDES
-
-    @property
-    def success(self) -> bool:
-        """The same: a path that collides is no path."""
-        return self.collision_free
-
-    @property
-    def gap(self) -> float | None:
-        """How much longer than the shortest it is, as a share of that; None for a path that is none."""
-        if self.optimum is None or not self.collision_free:
-            return None
-        return max(0.0, self.length / self.optimum - 1) if self.optimum else 0.0
-
-    @property
-    def clearance(self) -> float:
-        """Least distance from an obstacle, not grown; inf without obstacles."""
-        return self.problem.space.distance(self.path.points)
-
-    def verify(self) -> bool:
-        """Test the path again."""
-        return self.problem.space.holds(self.path.points)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values, for JSON."""
-        clearance = self.clearance
-        return {
-            "scene": self.problem.scene.name,
-            "method": self.method,
-            "status": str(self.status),
-            "success": self.success,
-            "collision_free": self.collision_free,
-            "length": self.length,
-            "optimum": self.optimum,
-            "gap": self.gap,
-            "cost": self.cost,
-            "clearance": clearance if np.isfinite(clearance) else None,
-            "evaluations": self.evaluations,
-            "seconds": self.seconds,
-            "seed": self.seed,
-            "path": self.path.points.tolist(),
-        }
-
-    def __str__(self) -> str:
-        far = (
-            ""
-            if self.gap is None or self.status is PathStatus.OPTIMAL
-            else f", {100 * self.gap:.2f} % above the optimum"
-        )
-        return f"{self.status}: length {self.length:.6g}{far} ({self.method}, {self.evaluations} evaluations)"
 
 
 def plan_path(
@@ -237,10 +72,8 @@ def plan_path(
     seed = int(rng) if isinstance(rng, (int, np.integer)) else None
     if method == EXACT:
         began = perf_counter()
-        fresh = PathProblem(problem.scene, problem.space)
-        path = fresh.optimum
-        took = perf_counter() - began
-        return PathPlan(path, PathStatus.OPTIMAL, path.length, path.length, EXACT, 0, took, seed, False, problem)
+        path = problem.optimum
+        return _exact(path, problem, PathStatus.OPTIMAL, perf_counter() - began, seed)
     whole("via", via, 1)
     algorithm = _algorithm(method)
     objective = make_fitness(fitness).on(problem.space, problem.scene.start, problem.scene.goal)
@@ -264,6 +97,33 @@ def plan_path(
         problem,
         found.trace,
     )
+
+
+def plan_alternatives(problem: PathProblem | Scene, count: int) -> list[PathPlan]:
+    """The shortest path and those that go another way round, one for each homotopy class, shortest first.
+
+    Args:
+        problem: A problem, or a scene for a point robot.
+        count: How many, at least 1; fewer come back if there are no more.
+
+    Raises:
+        Blocked: The robot cannot be at the start or the goal.
+        NoPath: There is no way.
+        InvalidSetting: A count below 1.
+    """
+    if isinstance(problem, Scene):
+        problem = PathProblem.of(problem)
+    began = perf_counter()
+    paths = problem.alternatives(count)
+    took = perf_counter() - began
+    rank = [PathStatus.OPTIMAL, *[PathStatus.FREE] * (len(paths) - 1)]
+    return [_exact(path, problem, status, took, None) for path, status in zip(paths, rank, strict=True)]
+
+
+def _exact(path: Path, problem: PathProblem, status: PathStatus, seconds: float, seed: int | None) -> PathPlan:
+    """A plan that needed no search."""
+    length = path.length
+    return PathPlan(path, status, problem.optimum.length, length, EXACT, 0, seconds, seed, False, problem)
 
 
 def _algorithm(method: str | Metaheuristic) -> Metaheuristic:

@@ -73,14 +73,14 @@ def _wkt(text: str, place: str) -> BaseGeometry:
 
 
 def _geojson(mapping: Mapping[str, Any], place: str) -> Iterator[tuple[shapely.Polygon, str]]:
-    match mapping.get("type"):
+    match mapping.get("type") if isinstance(mapping, Mapping) else mapping:
         case "FeatureCollection":
-            for i, feature in enumerate(mapping.get("features") or ()):
+            for i, feature in enumerate(_members(mapping, "features", place)):
                 yield from _geojson(feature, f"{place} feature {i}")
         case "Feature":
             yield from _geojson(mapping.get("geometry") or {}, place)
         case "GeometryCollection":
-            for i, geometry in enumerate(mapping.get("geometries") or ()):
+            for i, geometry in enumerate(_members(mapping, "geometries", place)):
                 yield from _geojson(geometry, f"{place} geometry {i}")
         case "Polygon" | "MultiPolygon":
             try:
@@ -90,6 +90,13 @@ def _geojson(mapping: Mapping[str, Any], place: str) -> Iterator[tuple[shapely.P
             yield from _parts(geometry, place)
         case kind:
             raise InvalidGeometry(f"{place} is GeoJSON of type {kind!r}: an obstacle is a {ACCEPTED}")
+
+
+def _members(mapping: Mapping[str, Any], key: str, place: str) -> list[Any]:
+    members = mapping.get(key)
+    if not isinstance(members, list):
+        raise InvalidGeometry(f"{place} is a GeoJSON {mapping['type']} without a list of {key}")
+    return members
 
 
 def _parts(geometry: BaseGeometry, place: str) -> Iterator[tuple[shapely.Polygon, str]]:

@@ -1,0 +1,115 @@
+"""A planned path: what it is worth by the exact test and against the shortest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+
+from pin_metaik.mobile.paths.path import Path
+from pin_metaik.mobile.paths.problem import PathProblem
+from pin_metaik.optimize.space import Array
+
+
+class PathStatus(StrEnum):
+    """Why a search for a path ended; only the first two are successes."""
+
+    OPTIMAL = "OPTIMAL"
+    """The shortest path of all, free of collisions."""
+    FREE = "FREE"
+    """Free of collisions; how far from the shortest is its gap."""
+    COLLIDES = "COLLIDES"
+    """The best that was found goes through an obstacle."""
+
+
+@dataclass(frozen=True, eq=False)
+class PathPlan:
+    """The best path found, and how good it is.
+
+    Attributes:
+        path: From start to goal.
+        status: Whether it is the shortest, free, or not a path at all.
+        optimum: Length of the shortest path; None if there is no way.
+        cost: The fitness at the path; the exact planner's is its length.
+        method: Name of the planner.
+        evaluations: Paths whose fitness was computed; 0 for the exact planner.
+        seconds: Time taken, in s: of a search without the optimum that the gap is measured by; of the exact planner
+            without what the problem had worked out already.
+        seed: Of every random choice; None if a generator was handed in.
+        interrupted: Whether it was stopped by Ctrl-C or its callback.
+        problem: What was asked.
+        trace: Evaluations and best cost after each generation (g, 2), when asked for.
+    """
+
+    path: Path
+    status: PathStatus
+    optimum: float | None
+    cost: float
+    method: str
+    evaluations: int
+    seconds: float
+    seed: int | None
+    interrupted: bool
+    problem: PathProblem
+    trace: Array | None = None
+
+    @property
+    def length(self) -> float:
+        """Length of the path, free or not."""
+        return self.path.length
+
+    @property
+    def collision_free(self) -> bool:
+        """Whether the path keeps its clearance, by the exact test."""
+        return self.status is not PathStatus.COLLIDES
+
+    @property
+    def success(self) -> bool:
+        """The same: a path that collides is no path."""
+        return self.collision_free
+
+    @property
+    def gap(self) -> float | None:
+        """How much longer than the shortest it is, as a share of that; None for a path that is none."""
+        if self.optimum is None or not self.collision_free:
+            return None
+        return max(0.0, self.length / self.optimum - 1) if self.optimum else 0.0
+
+    @property
+    def clearance(self) -> float:
+        """Least distance from an obstacle, not grown; inf without obstacles."""
+        return self.problem.space.distance(self.path.points)
+
+    def verify(self) -> bool:
+        """Test the path again."""
+        return self.problem.space.holds(self.path.points)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON."""
+        clearance = self.clearance
+        return {
+            "scene": self.problem.scene.name,
+            "method": self.method,
+            "status": str(self.status),
+            "success": self.success,
+            "collision_free": self.collision_free,
+            "length": self.length,
+            "optimum": self.optimum,
+            "gap": self.gap,
+            "cost": self.cost,
+            "clearance": clearance if np.isfinite(clearance) else None,
+            "evaluations": self.evaluations,
+            "seconds": self.seconds,
+            "seed": self.seed,
+            "path": self.path.points.tolist(),
+        }
+
+    def __str__(self) -> str:
+        far = (
+            ""
+            if self.gap is None or self.status is PathStatus.OPTIMAL
+            else f", {100 * self.gap:.2f} % above the optimum"
+        )
+        return f"{self.status}: length {self.length:.6g}{far} ({self.method}, {self.evaluations} evaluations)"
