@@ -120,8 +120,9 @@ class Report:
             f"Random starts; {self.targets:,} targets a robot and family for {OURS}, the first {self.peer_targets:,} "
             "for the peers, which have 50 ms a target, with random restarts. Solved: within 1e-5 m and 1e-5 rad "
             "and inside the limits, by Pinocchio, whatever the solver says. Times are us a call, unsolved "
-            "targets included: means of processor time (of all threads: TRAC-IK runs two); median, p99 and *wall* by the "
-            f"clock. *x ours* is how many times longer than {OURS} a solver takes: the median over blocks of targets that both were given within "
+            "targets included: means of processor time (of all threads: TRAC-IK runs two); median, p99 and *wall* by "
+            f"the clock. *x ours* is how many times longer than {OURS} a solver takes: the median over blocks of "
+            "targets that both were given within "
             "the same moments. A tail of slow targets hides from that median, so *of means* is the ratio of the mean "
             "times on the same targets.",
             "",

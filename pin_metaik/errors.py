@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-
 LISTED, NEAR = 100, 8  # longer lists than this are cut to the nearest names
 
 

@@ -154,7 +154,8 @@ def _judge(
     met = (position <= tolerances[0]) & (orientation <= tolerances[1]) & (chain.inside(q) == q).all(axis=1)
     batch.success[part] = met
     batch.status[part] = IKStatus.SOLVED
-    return np.arange(part.start, part.stop)[~met]
+    left: NDArray[np.int64] = np.arange(part.start, part.stop)[~met]
+    return left
 
 
 def _errors(
