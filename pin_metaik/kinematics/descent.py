@@ -21,7 +21,7 @@ from pin_metaik.kinematics.kernels import forward, jacobian, pose_error, residua
 
 PATIENCE = 4  # steps that must bring the squared error below `progress`, or the start is given up
 DAMPING_FLOOR = 1e-9  # what is left of the damping at a solution
-POLISH = 1  # further steps once the tolerance is met, while each gains a decade
+POLISH, EXACT = 3, 1e-18  # further steps once the tolerance is met, while each gains a decade; until 1e-9 m or rad
 
 Arm: TypeAlias = tuple[Floats, Ints, Ints, Floats]  # joints, wiring, ends, tips
 Bounds: TypeAlias = tuple[Floats, Floats, Ints]  # lower, upper, winds
@@ -209,7 +209,7 @@ def descend_from(
         if solved:
             polish = polish - 1 if found else POLISH
             found = True
-            if polish == 0 or square == 0.0:
+            if polish == 0 or square < EXACT:
                 return i + 1, True, least
         elif i % PATIENCE == 0:
             if square > progress * mark:

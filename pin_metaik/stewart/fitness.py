@@ -17,8 +17,8 @@ from pin_metaik.stewart.surveying import judge_cells, with_best_length
 from pin_metaik.stewart.task import DesignTask
 from pin_metaik.stewart.workspace import Workspace
 
-UNUSABLE = 1.0  # cost of an empty or singular workspace; feasible designs cost at most 0
-UNBUILDABLE = 2.0  # cost of legs or joints that are in each other's way, before counting by how much
+UNUSABLE = 1.0  # cost of a singular, small or empty workspace, before counting how much of it is; others cost at most 0
+UNBUILDABLE = 3.0  # cost of legs or joints that are in each other's way, before counting by how much
 
 
 @dataclass(frozen=True)
@@ -62,16 +62,17 @@ class Fitness:
         return np.array([self.cost(x) for x in X])
 
     def cost(self, x: Array) -> float:
-        """Minus the fitness; 1 ... 2 for a workspace that is empty or singular, more for what cannot be built."""
+        """Minus the fitness; 1 ... 2 for a workspace of no use, 2 if it is empty, more for what cannot be built."""
         dimensions = self.variables.dimensions(x)
         if missing := self.missing(dimensions):
             return UNBUILDABLE + missing / self.cube
         workspace = self.workspace(*self.build(dimensions))
         if not workspace.regular.any():
-            return UNUSABLE
+            return UNUSABLE + 1.0
         if (wrong := _wrong_side(workspace)) > 0.0:
             return UNUSABLE + wrong
-        return -self.score(workspace).fitness
+        score, least = self.score(workspace), self.task.least_workspace
+        return UNUSABLE + 1.0 - score.workspace / least if score.workspace < least else -score.fitness
 
     def missing(self, dimensions: Dimensions) -> float:
         """How much length is missing for the joints to keep their gap and the legs to extend, m; 0 if none."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from pin_metaik.errors import MissingExtra
 from pin_metaik.optimize.space import Array
+from pin_metaik.stewart.body import body_of, draw_body, polygons
 from pin_metaik.stewart.design import Designed
 from pin_metaik.stewart.geometry import on_circle
 from pin_metaik.stewart.inverse import leg_vectors
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
 STEEL, PLATE, ROD = "#4a4f57", "#e07b1a", "#2f6fb0"
 TAG = {"boxstyle": "circle,pad=0.15", "facecolor": "white", "edgecolor": STEEL, "linewidth": 0.6}
 VIEW = {"elev": 18.0, "azim": -60.0}
-MOST_CELLS = 60  # of a workspace along each axis; more than that nobody sees
-LIGHT = {(0, 1): 0.88, (0, -1): 0.8, (1, 1): 0.72, (1, -1): 0.94, (2, 1): 1.0, (2, -1): 0.62}
-"""How bright the faces of cells are, by their axis and side: lit from above and in front."""
 
 
 def draw(mechanism: Mechanism, workspace: Workspace | None = None, pose: PoseLike | None = None) -> Figure:
@@ -60,13 +57,14 @@ def draw_into(
     axes = figure.add_subplot(1, 2 if workspace is not None else 1, 1, projection="3d")
     _mechanism(axes, mechanism, T, scale)
     axes.set_title(f"{mechanism.name} ({mechanism.geometry.type})", fontsize=11)
-    _dress(axes, unit)
+    _dress(axes, tuple(f"{name} ({unit})" for name in "xyz"))
     if workspace is not None:
         axes = figure.add_subplot(1, 2, 2, projection="3d")
-        _body(figure, axes, workspace, scale)
+        body = body_of(workspace, scale, unit)
+        draw_body(figure, axes, body)
         gdi = "no GDI: singular" if workspace.gdi is None else f"GDI {workspace.gdi:.3f}"
-        axes.set_title(f"workspace: {1e6 * workspace.volume:.4g} cm³, {gdi}", fontsize=11)
-        _dress(axes, unit)
+        axes.set_title(f"{body.title}, {gdi}", fontsize=11)
+        _dress(axes, body.labels)
 
 
 def draw_history(designed: Designed) -> Figure:
@@ -138,59 +136,12 @@ def _mechanism(axes: Any, mechanism: Mechanism, T: Array, scale: float) -> None:
 
 
 def _plate(axes: Any, corners: Array, colour: str) -> None:
-    axes.add_collection3d(_polygons([corners], facecolor=colour, alpha=0.22, edgecolor=colour))
+    axes.add_collection3d(polygons([corners], facecolor=colour, alpha=0.22, edgecolor=colour))
 
 
-def _body(figure: Figure, axes: Any, workspace: Workspace, scale: float) -> None:
-    """The workspace as a body of cells: their outer faces, coloured by nu, the lower the darker lit."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
-    faces, light, nu = _faces(workspace)
-    colour = ScalarMappable(Normalize(nu.min(), nu.max()), "viridis")
-    rgba = colour.to_rgba(nu)
-    rgba[:, :3] *= light[:, None]
-    axes.add_collection3d(_polygons(scale * faces, facecolors=rgba, edgecolors=rgba, linewidths=0.2))
-    corners = scale * faces.reshape(-1, 3)
-    for name, low, high in zip("xyz", corners.min(axis=0), corners.max(axis=0), strict=True):
-        getattr(axes, f"set_{name}lim")(low, high)
-    bar = figure.colorbar(colour, ax=axes, shrink=0.62, pad=0.12)
-    bar.set_label("nu, mean over the orientations reached" if len(workspace.cells.rpy) > 1 else "nu")
-
-
-def _polygons(corners: Any, **style: Any) -> Any:
-    """Polygons in space for ``add_collection3d``."""
-    return import_module("mpl_toolkits.mplot3d.art3d").Poly3DCollection(corners, **style)
-
-
-def _faces(workspace: Workspace) -> tuple[Array, Array, Array]:
-    """Outer faces (f, 4, 3) of the cells reached, how bright each is (f,), and the cell's nu (f,)."""
-    step = [-(-count // MOST_CELLS) for count in workspace.states.shape[:3]]  # of a fine grid, every so many cells
-    coarse = tuple(slice(s // 2, None, s) for s in step)
-    reached = workspace.reached[coarse]
-    nu = workspace.nu[coarse].sum(axis=-1) / np.maximum(reached.sum(axis=-1), 1)
-    body = np.pad(reached.any(axis=-1), 1)
-    cells = workspace.cells
-    centres = [axis[part] for axis, part in zip((cells.xs, cells.ys, cells.zs), coarse, strict=True)]
-    thin = 0.02 * workspace.geometry.base_radius  # of a layer one cell thick
-    half = np.array([0.5 * (axis[1] - axis[0]) if len(axis) > 1 and axis[1] > axis[0] else thin for axis in centres])
-    faces, light, values = [], [], []
-    for (axis, side), bright in LIGHT.items():
-        index = np.argwhere(body & ~np.roll(body, -side, axis)) - 1
-        middle = np.column_stack([centre[i] for centre, i in zip(centres, index.T, strict=True)])
-        u, v = ((axis + k) % 3 for k in (1, 2))
-        for_corners = np.zeros((4, 3))
-        for_corners[:, axis] = side
-        for_corners[:, u], for_corners[:, v] = (-1, 1, 1, -1), (-1, -1, 1, 1)
-        faces.append(middle[:, None] + half * for_corners)
-        light.append(np.full(len(index), bright))
-        values.append(nu[tuple(index.T)])
-    return np.concatenate(faces), np.concatenate(light), np.concatenate(values)
-
-
-def _dress(axes: Any, unit: str) -> None:
-    for name in "xyz":
-        getattr(axes, f"set_{name}label")(f"{name} ({unit})", fontsize=9)
+def _dress(axes: Any, labels: tuple[str, ...]) -> None:
+    for name, label in zip("xyz", labels, strict=True):
+        getattr(axes, f"set_{name}label")(label, fontsize=9)
     axes.tick_params(labelsize=8)
-    axes.set_box_aspect([np.ptp(getattr(axes, f"get_{name}lim")()) for name in "xyz"])
+    axes.set_box_aspect([np.ptp(getattr(axes, f"get_{name}lim")()) for name in "xyz"], zoom=0.92)
     axes.view_init(**VIEW)

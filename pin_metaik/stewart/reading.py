@@ -43,6 +43,7 @@
     seed = 0
     index = "gdi"                          # or "lci" with a threshold
     weights = [0.78, 0.22]
+    least_workspace = 0.05
     joint_gap = 42
     settings = { agents = 60 }             # of the metaheuristic
 
@@ -94,6 +95,7 @@ DESIGN = (
     "threshold",
     "weights",
     "cube",
+    "least_workspace",
     "joint_gap",
     "ranges",
     "workspace",
@@ -216,8 +218,7 @@ def _task(content: object, path: str, length: Unit, angle: Unit) -> DesignTask:
     given |= {key: table.number(key, length) for key in ("cube", "joint_gap") if key in table}
     if "index" in table:
         given["index"] = table.text("index")
-    if "threshold" in table:
-        given["threshold"] = table.number("threshold")
+    given |= {key: table.number(key) for key in ("threshold", "least_workspace") if key in table}
     if "weights" in table:
         given["weights"] = table.numbers("weights", PURE, 2)
     if "from_current" in table:

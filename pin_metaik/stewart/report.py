@@ -110,7 +110,10 @@ def outcome(designed: Designed) -> Lines:
     lines = [("ended", designed.search.status.value), ("designs looked at", str(designed.search.evaluations))]
     lines.append(("time", f"{designed.search.seconds:.3g} s"))
     if designed.score is None:
-        return [*lines, ("design", "none found with room for its joints and a workspace without singularities")]
+        return [
+            *lines,
+            ("design", "none found: all lack room for joints, or a workspace that is large enough and regular"),
+        ]
     score = designed.score
     parts = f"dexterity {score.dexterity:.4f}, workspace {score.workspace:.4f}"
     return [*lines, ("fitness", f"{score.fitness:.4f}: {parts}")]

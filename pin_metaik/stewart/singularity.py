@@ -92,8 +92,8 @@ def crossings(geometry: Geometry, trajectory: Trajectory) -> list[Crossing]:
     holds = nu > 0.0
     found = []
     for k in np.flatnonzero(~holds):
-        before, after = regular[:k][holds[:k]][-1:], regular[k:][holds[k:]][:1]
-        found.append(Crossing(float(times[k]), trajectory.poses[k], len(before) == len(after) == 1 and before != after))
+        ends = (*regular[:k][holds[:k]][-1:], *regular[k:][holds[k:]][:1])  # the signs before and after, if there are
+        found.append(Crossing(float(times[k]), trajectory.poses[k], len(ends) == 2 and bool(ends[0] != ends[1])))
     for k in np.flatnonzero((regular[:-1] != regular[1:]) & holds[:-1] & holds[1:]):
         found.append(_bisect(geometry, trajectory, times[k], times[k + 1], bool(regular[k])))
     for k in np.flatnonzero((nu[1:-1] <= nu[:-2]) & (nu[1:-1] < nu[2:]) & holds[1:-1]) + 1:

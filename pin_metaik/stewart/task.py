@@ -24,8 +24,8 @@ class DesignTask:
     reached and V their volume. With several orientations, V is the mean over them; at a single position, V / cube^3 is
     the share of the orientations.
 
-    Designs with joints closer than ``joint_gap``, legs whose shortest is longer than their longest, an empty workspace,
-    or a singularity in it are never better than one without.
+    Designs with joints closer than ``joint_gap``, legs whose shortest is longer than their longest, a workspace that is
+    empty or smaller than ``least_workspace``, or a singularity in it are never better than one without.
 
     Attributes:
         ranges: What may change.
@@ -34,6 +34,8 @@ class DesignTask:
         weights: Of dexterity and workspace. The paper prints 78 % and 12 %; the second is read as 22 %.
         cube: Side in m of a cube whose volume counts as 1. The paper does not say how it made volumes comparable;
             None: twice the longest stroke within the ranges.
+        least_workspace: What V / cube^3 must reach. With much weight on dexterity the best workspace may otherwise be a
+            speck: for stroke 150 and the paper's weights one of 6 cm3 beats 2800.
         joint_gap: Least distance between the centres of neighbouring joints, m.
         grid: Poses on which designs are compared. It is coarse: a design is looked at a few thousand times.
         algorithm: A metaheuristic's name or object; the default is the paper's swarm of 60.
@@ -51,6 +53,7 @@ class DesignTask:
     threshold: float = 0.5
     weights: tuple[float, float] = (0.78, 0.22)
     cube: float | None = None
+    least_workspace: float = 0.0
     joint_gap: float = 0.0
     grid: Grid = field(default=Grid((14, 14, 14)))
     algorithm: str | Metaheuristic = field(default=PSO(agents=60))
@@ -70,6 +73,7 @@ class DesignTask:
         object.__setattr__(self, "weights", (float(self.weights[0]), float(self.weights[1])))
         if self.cube is not None and not self.cube > 0.0:
             raise InvalidSetting(f"cube is a length above zero in m, got {self.cube!r}")
+        within("least_workspace", self.least_workspace, 0.0, 1e6)
         within("joint_gap", self.joint_gap, 0.0, 1e6)
         make(self.algorithm)
         whole("evaluations", self.evaluations, 1)

@@ -102,6 +102,8 @@ def _task(task: DesignTask, mm: Unit) -> list[str]:
     lines.append(f"weights = {_list(task.weights, PURE)}")
     if task.cube is not None:
         lines.append(f"cube = {mm.write(task.cube)}")
+    if task.least_workspace > 0.0:
+        lines.append(f"least_workspace = {PURE.write(task.least_workspace)}")
     lines.append(f"joint_gap = {mm.write(task.joint_gap)}")
     lines = _section("design", lines) + _section("design.settings", settings)
     lines += _section("design.ranges", _ranges(task.ranges, mm))

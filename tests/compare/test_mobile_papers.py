@@ -107,7 +107,7 @@ def test_the_claims_about_networks_are_counted_not_written():
     trials = [net(*key, 2.0 if key[2] == "grid" else 1.0) for key in PRINTED]
     said = " ".join(trajectory.claims(trials))
     assert "lower mean error in all models. Here in 8 of 8" in said
-    assert "larger in 0 of 8" in said
+    assert "larger in 0 of 8, in the print" in said
     worse = " ".join(trajectory.claims([net(*key, 1.0 if key[2] == "grid" else 2.0) for key in PRINTED]))
     assert "Here in 0 of 8" in worse
 

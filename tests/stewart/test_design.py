@@ -145,11 +145,13 @@ def test_what_cannot_be_built_costs_more_than_what_does_not_work_and_that_more_t
     disordered[-1] = disordered[-3]
     costs = fitness(np.array([good, nowhere, tight, tighter, disordered]))
     assert costs[0] < 0
-    assert costs[1] == 1
-    assert 2 < costs[2] < costs[3]
-    assert costs[4] > 2
+    assert costs[1] == 2
+    assert 3 < costs[2] < costs[3]
+    assert costs[4] > 3
     turning = Fitness(with_task(mechanism, grid=Grid((6, 6, 6), steps=(1, 1, 9), yaw=(0, 2.4))))  # across a singularity
     assert 1 < turning(np.array([good]))[0] < 2
+    large = Fitness(with_task(mechanism, least_workspace=0.9))
+    assert 1 < large(np.array([good]))[0] < 2
 
 
 def test_a_gap_that_fits_nowhere_has_no_design():
@@ -159,6 +161,12 @@ def test_a_gap_that_fits_nowhere_has_no_design():
     assert found.mechanism == with_task(stroke(50), joint_gap=1.0, evaluations=120)
     assert (found.history[:, 1] < 0).all()
     assert "no feasible design" in str(found)
+
+
+def test_the_least_workspace_keeps_dexterous_specks_out():
+    mechanism = with_task(stroke(150), evaluations=300, weights=(1.0, 0.0), least_workspace=0.08)
+    found = design(mechanism)
+    assert found.score.workspace >= 0.08
 
 
 def test_ctrl_c_returns_the_best_design_so_far():
@@ -194,6 +202,7 @@ def test_legs_without_stroke_need_a_cube():
         ({"weights": 3}, InvalidSetting, "weights are two numbers"),
         ({"threshold": 1.5}, InvalidSetting, "threshold"),
         ({"joint_gap": -1}, InvalidSetting, "joint_gap"),
+        ({"least_workspace": -0.1}, InvalidSetting, "least_workspace"),
         ({"cube": 0.0}, InvalidSetting, "cube is a length above zero"),
         ({"evaluations": 0}, InvalidSetting, "evaluations"),
         ({"seed": -1}, InvalidSetting, "seed"),

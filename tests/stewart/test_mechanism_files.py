@@ -70,6 +70,7 @@ index = "lci"
 threshold = 0.3
 weights = [0.5, 0.5]
 cube = 150
+least_workspace = 0.01
 joint_gap = 42
 settings = { agents = 30, beta_end = 0.4 }
 
@@ -160,6 +161,7 @@ def test_everything_there_is_survives_a_file(write):
                 1 / 3,
                 (1 / 3, 2 / 3),
                 0.1 / 3,
+                0.01 / 7,
                 1e-3 / 7,
                 Grid((2, 2, 2)),
                 PSO(agents=7, v_max=0.3, c1=1 / 3),

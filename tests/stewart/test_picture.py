@@ -40,7 +40,9 @@ def test_orientations_and_singular_workspaces_are_drawn(tmp_path):
     single = with_grid(
         reference(), counts=(1, 1, 1), x=(0, 0), y=(0, 0), z=(0.37, 0.37), steps=(3, 1, 1), roll=(-0.1, 0.1)
     )
-    save_picture(draw(single, single.survey()), tmp_path / "single.png")
+    figure = draw(single, single.survey())
+    assert figure.axes[1].get_xlabel() == "roll (deg)"
+    save_picture(figure, tmp_path / "single.png")
 
 
 def test_the_history_of_a_design_is_drawn(tmp_path):

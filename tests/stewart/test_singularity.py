@@ -28,7 +28,7 @@ def test_turning_an_octahedron_crosses_its_singularity_at_90_degrees():
 def test_a_sample_on_the_singularity_is_a_crossing_like_any_other():
     yaws = np.pi / 2 + np.array([-0.4, -0.2, 0.0, 0.2])
     (found,) = crossings(cube(0.1), Trajectory.through(np.arange(4), [pose_at((0, 0, 0.1), (0, 0, a)) for a in yaws]))
-    assert found.crosses
+    assert found.crosses is True
     assert found.time == 2.0
 
 

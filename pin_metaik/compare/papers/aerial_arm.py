@@ -66,7 +66,9 @@ def sfla(row: Row) -> SFLA:
 
 def sections(trials: Sequence[Trial], options: Options) -> list[Section]:
     """Table 3 again, DE with the same evaluations, the hybrids, and what the printed table says of itself."""
+    trials = sorted(trials, key=lambda trial: int(trial.case.removeprefix("row ")))
     searches = [trial for trial in trials if trial.trace is not None]
+    frogs = [trial for trial in searches if trial.method == "SFLA"]
     return [
         Section(
             "Table 3: the modified SFLA",
@@ -106,7 +108,7 @@ def sections(trials: Sequence[Trial], options: Options) -> list[Section]:
             "Joint angles",
             (),
             (
-                angles("aerial_arm_angles", "Best runs of SFLA", of_method(searches, "SFLA"), "deg", "J"),
+                angles("aerial_arm_angles", "Best runs of SFLA", frogs, "deg", "J"),
                 every_run("aerial_arm_runs", trials, "J"),
             ),
         ),
@@ -210,11 +212,6 @@ def panels(trials: Sequence[Trial], options: Options) -> dict[str, dict[str, Run
         }
         for method in METHODS
     }
-
-
-def of_method(trials: Sequence[Trial], method: str) -> list[Trial]:
-    """The trials of a method, in the order of the rows."""
-    return sorted(of(trials, method=method), key=lambda trial: int(trial.case.split()[1]))
 
 
 AERIAL_ARM = Paper(
