@@ -21,7 +21,7 @@ OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
 # Sums may be taken in another order and a b + c be rounded once; infinities and NaN keep their meaning.
 LOOSE = {"contract", "reassoc", "nsz", "arcp"}
 
-WAIT = 1.5  # s; reading machine code from the cache takes a tenth of it
+WAIT = 3.0  # s; reading machine code from the cache takes a tenth of it
 NOTICE = "pin_metaik: compiling an inner loop for this machine, once; this takes some ten seconds ..."
 
 

@@ -43,8 +43,8 @@ def plan_trajectory(
 ) -> TrajectoryPlan:
     """Plan the quickest motion of straights and curves along a polyline, from rest to rest.
 
-    Curves lie inside their corners, where the obstacle is: a path that touches the obstacles grown by the radius leaves
-    no room for them, and the robot stops at every corner. Plan the path with a margin.
+    Curves lie inside their corners, where the obstacle is: a path along the obstacles grown by the radius alone leaves
+    little room for them, and where there is none the robot stops. Plan the path with a margin.
 
     Args:
         path: A polyline, or its points (n, 2) in m.
