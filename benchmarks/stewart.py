@@ -47,6 +47,11 @@ def best_time(work: Callable[[], object], repeats: int = REPEATS) -> float:
     return min(times)
 
 
+def rate(per_second: float) -> str:
+    """A rate to two digits: 46,000,000."""
+    return f"{float(f'{per_second:.2g}'):,.0f}"
+
+
 def speeds() -> Iterator[str]:
     """Rows: what, how many a second."""
     mechanism = stewart.load_mechanism("stroke_100")
@@ -62,11 +67,11 @@ def speeds() -> Iterator[str]:
     yield "|---|---|"
     for label, dexterity in (("Frobenius", Dexterity()), ("2-norm", Dexterity("two"))):
         seconds = best_time(lambda dexterity=dexterity: stewart.survey(geometry, limits, grid, dexterity))
-        yield f"| poses of the grid: leg lengths, then nu where reached, {label} | {found.states.size / seconds:.2g} |"
+        yield f"| poses of the grid: leg lengths, nu where reached, {label} | {rate(found.states.size / seconds)} |"
     poses = found.poses(found.reached)
     for label, dexterity in (("Frobenius", Dexterity()), ("2-norm", Dexterity("two"))):
         seconds = best_time(lambda dexterity=dexterity: stewart.conditioning(geometry, poses, dexterity))
-        yield f"| nu of given poses, {label} | {len(poses) / seconds:.2g} |"
+        yield f"| nu of given poses, {label} | {rate(len(poses) / seconds)} |"
 
     hexapod = stewart.load_mechanism("reference_6x6")
     rng = np.random.default_rng(0)
@@ -78,16 +83,17 @@ def speeds() -> Iterator[str]:
         ]
     )
     lengths = stewart.leg_lengths(hexapod.geometry, poses)
-    yield f"| inverse kinematics, 6x6 | {2000 / best_time(lambda: stewart.leg_lengths(hexapod.geometry, poses)):.2g} |"
+    inverse = best_time(lambda: stewart.leg_lengths(hexapod.geometry, poses))
+    yield f"| inverse kinematics, 6x6 | {rate(2000 / inverse)} |"
     many = best_time(lambda: stewart.forward(hexapod.geometry, lengths, home))
     one = best_time(lambda: [stewart.forward(hexapod.geometry, d, home) for d in lengths[:200]])
-    yield f"| forward kinematics, 6x6, 2000 at once | {2000 / many:.2g} |"
-    yield f"| forward kinematics, 6x6, one a call | {200 / one:.2g} |"
+    yield f"| forward kinematics, 6x6, 2000 at once | {rate(2000 / many)} |"
+    yield f"| forward kinematics, 6x6, one a call | {rate(200 / one)} |"
     closed = stewart.closed_model(hexapod)
     loops = best_time(lambda: [closed.forward(d, home) for d in lengths[:100]], 3)
-    yield f"| forward kinematics by Pinocchio's closures, one a call | {100 / loops:.2g} |"
+    yield f"| forward kinematics by Pinocchio's closures, one a call | {rate(100 / loops)} |"
     every = best_time(lambda: stewart.all_forward(hexapod.geometry, lengths[0]), 3)
-    yield f"| all assemblies of a 6x6 | {1 / every:.2g} |"
+    yield f"| all assemblies of a 6x6 | {rate(1 / every)} |"
 
 
 def designs() -> Iterator[str]:
