@@ -39,9 +39,10 @@ def run_lane(
     The loop writes nothing into q that is outside the limits; how near q is remains for Pinocchio to say.
     """
     ended = np.empty((len(q), 2), np.int64)
-    solve_poses, *given = chain.lane
-    solve_poses(
-        *given,
+    rows = None if tolerances[1] < math.inf else chain.kernels.POSITION
+    chain.kernels.solve_poses.compiled(rows is None)(
+        *chain.lane,
+        rows,
         starts,
         dls.damping,
         PROGRESS,

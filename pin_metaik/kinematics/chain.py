@@ -155,12 +155,11 @@ class Chain:
 
     @cached_property
     def lane(self) -> tuple[Any, ...]:
-        """The fast lane's loop, and what it takes of a chain with one frame."""
+        """What the fast lane takes of a chain with one frame."""
         coordinates, joints = self.coordinates, self.model.joints
         places = [(joints[int(j)].idx_q, joints[int(j)].nq == 2) for j in coordinates.joints]
         places_of = np.array(places, dtype=np.int64)
         return (
-            self.kernels.solve_poses.compiled(),
             *self.paths.arrays,
             *self.limits.arrays,
             *self.atlas.arrays,

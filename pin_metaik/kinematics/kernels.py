@@ -30,6 +30,13 @@ from pin_metaik.compiled import Floats, Ints, exact, inline, jit, shared
 PATHS = "f8[:,::1], i8[:,::1], i8[::1], f8[:,::1]"  # joints, wiring, ends, tips
 
 
+@inline
+def copy(source: Floats, target: Floats) -> None:
+    """Copy (n,) numbers; an assignment of slices compiles for two seconds longer, for the message it might raise."""
+    for i in range(target.shape[0]):
+        target[i] = source[i]
+
+
 @exact
 def cos_sin(x: float) -> tuple[float, float]:
     """Cosine and sine to 2e-16 for |x| < 1e5: Cody-Waite reduction, minimax polynomials; half the time of libm's."""

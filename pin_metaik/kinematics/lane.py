@@ -12,6 +12,7 @@ from pin_metaik.kinematics.kernels import PATHS
 from pin_metaik.kinematics.searches import ATLAS, BOUNDS, search
 
 ORTHONORMAL = 1e-6  # how far R'R may be from the identity
+POSITION = np.array([[0, 0], [0, 1], [0, 2]])  # the rows that count where orientation is free
 SOLVED, UNSOLVED, NO_POSE, NO_START = 0, 1, 2, 3
 
 
@@ -41,7 +42,7 @@ def task_of(M: Floats, task: Floats) -> None:
 
 
 @jit(
-    f"void({PATHS}, {BOUNDS}, {ATLAS}, f8[::1], f8[::1], i8[:,::1], f8[:,::1], f8, f8, i8, i8, f8, f8, "
+    f"void({PATHS}, {BOUNDS}, {ATLAS}, f8[::1], f8[::1], i8[:,::1], i8[:,::1]?, f8[:,::1], f8, f8, i8, i8, f8, f8, "
     "f8[:,:,::1], f8[:,::1], f8[:,::1], i8[:,::1])"
 )
 def solve_poses(
@@ -58,6 +59,7 @@ def solve_poses(
     least: Floats,
     most: Floats,
     places: Ints,
+    rows: Ints | None,
     starts: Floats,
     damping: float,
     progress: float,
@@ -70,7 +72,7 @@ def solve_poses(
     q: Floats,
     ended: Ints,
 ) -> None:
-    """``search`` for the poses (k, 4, 4) of one tip, each on its own; orientation is free where ``aligned`` is inf.
+    """``search`` for the poses (k, 4, 4) of one tip, each on its own; with the rows ``POSITION``, for their positions.
 
     What ``search`` does not have: ``least`` and ``most`` (nq,) limit every entry of q; ``places`` (n, 2) is where in q
     a coordinate is and whether it is a pair (cos, sin); ``near`` and ``aligned`` are the tolerances, m and rad; q0
@@ -78,14 +80,11 @@ def solve_poses(
     and one of SOLVED, UNSOLVED, NO_POSE, NO_START, is written.
     """
     n = lower.shape[0]
-    free = not aligned < np.inf
-    tasks, rows = np.zeros((1, 26)), np.zeros((3 if free else 6, 2), np.int64)
-    for j in range(rows.shape[0]):
-        rows[j, 1] = j
-    tasks[0, 15:18] = np.inf if free else 0.0
+    tasks = np.zeros((1, 26))
+    tasks[0, 15:18] = 0.0 if rows is None else np.inf
     tasks[0, 18:24] = 1.0
     tasks[0, 24], tasks[0, 25] = 0.999 * near, 0.999 * aligned
-    work = workspace(n, rows.shape[0], joints.shape[0])
+    work = workspace(n, rows, joints.shape[0])
     own, best = starts.copy(), np.empty(n)
     for i in range(targets.shape[0]):
         ended[i, 0] = 0

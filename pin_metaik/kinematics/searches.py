@@ -8,7 +8,7 @@ import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit, shared
 from pin_metaik.kinematics.descent import Arm, Bounds, Settings, Work, descend_from, evaluate, workspace
-from pin_metaik.kinematics.kernels import PATHS, forward
+from pin_metaik.kinematics.kernels import PATHS, copy, forward
 
 ATLAS = "f8[:,:,::1], f8[:,::1], f8"  # leaves, entries, scale
 
@@ -33,9 +33,11 @@ def linearize(
     J: Floats,
 ) -> tuple[float, bool]:
     """Weighted residual r (m,) and Jacobian by coordinate J (n, m) at x; also |r|^2 and whether all is in tolerance."""
-    work = workspace(x.shape[0], rows.shape[0], joints.shape[0])
+    work = workspace(x.shape[0], rows, joints.shape[0])
     square, met = evaluate((joints, wiring, ends, tips), tasks, rows, x, work)
-    r[:], J[:, :] = work[8], work[9]
+    copy(work[6], r)
+    for c in range(x.shape[0]):
+        copy(work[7][c], J[c])
     return square, met
 
 
@@ -101,7 +103,7 @@ def unwind(x: Floats, x0: Floats, bounds: Bounds) -> None:
 def search(
     arm: Arm,
     tasks: Floats,
-    rows: Ints,
+    rows: Ints | None,
     bounds: Bounds,
     atlas: Atlas,
     starts: Floats,
@@ -170,11 +172,11 @@ def neighbours(tasks: Floats, leaves: Floats, entries: Floats, scale: float, cou
     for leaf in range(leaves.shape[0] - 1):
         merge_nearest(leaves[1 + leaf], leaf, goal, weights, away, order, distances)
     for k in range(count):
-        out[k] = entries[order[k]]
+        copy(entries[order[k]], out[k])
 
 
 BOUNDS = "f8[::1], f8[::1], i8[::1]"  # lower, upper, winds
-PROBLEM = f"{PATHS}, f8[:,::1], i8[:,::1], {BOUNDS}"  # ..., tasks, rows, ...
+PROBLEM = f"{PATHS}, f8[:,::1], i8[:,::1]?, {BOUNDS}"  # ..., tasks, rows, ...
 SETTINGS = "f8, f8, i8, i8"  # damping, progress, evaluations from one start, evaluations
 
 
@@ -185,7 +187,7 @@ def descend(
     ends: Ints,
     tips: Floats,
     tasks: Floats,
-    rows: Ints,
+    rows: Ints | None,
     lower: Floats,
     upper: Floats,
     winds: Ints,
@@ -200,7 +202,7 @@ def descend(
     best: Floats,
 ) -> tuple[int, int]:
     """``search`` for one problem."""
-    work = workspace(lower.shape[0], rows.shape[0], joints.shape[0])
+    work = workspace(lower.shape[0], rows, joints.shape[0])
     return search(
         (joints, wiring, ends, tips),
         tasks,
@@ -237,7 +239,7 @@ def descend_all(
     ends: Ints,
     tips: Floats,
     tasks: Floats,
-    rows: Ints,
+    rows: Ints | None,
     lower: Floats,
     upper: Floats,
     winds: Ints,
@@ -259,20 +261,20 @@ def descend_all(
     moved by pi, which is where others often are. Returns evaluations, solutions and the length of the last vain row.
     """
     n = lower.shape[0]
-    work = workspace(n, rows.shape[0], joints.shape[0])
+    work = workspace(n, rows, joints.shape[0])
     x, start = np.empty(n), np.empty(n)
     spent, count, vain = 0, known, 0
     turned = n * known  # half-turn starts already taken: joint turned % n of solution turned // n
     given = 0
     while spent < evaluations and count < solutions.shape[0] and vain < patience:
         if branch and turned < n * count:
-            start[:] = solutions[turned // n]
+            copy(solutions[turned // n], start)
             c = turned % n
             turned += 1
             start[c] += -np.pi if start[c] + np.pi > upper[c] else np.pi
             start[c] = min(max(start[c], lower[c]), upper[c])
         elif given < starts.shape[0]:
-            start[:] = starts[given]
+            copy(starts[given], start)
             given += 1
         else:
             break
@@ -292,7 +294,7 @@ def descend_all(
         if met:
             vain += 1
             if is_new(x, solutions, count, winds, apart):
-                solutions[count] = x
+                copy(x, solutions[count])
                 count += 1
                 vain = 0
     return spent, count, vain
