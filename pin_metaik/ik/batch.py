@@ -121,8 +121,8 @@ def solve_ik_batch(
         left: Iterable[int] = range(k)
         if array is not None and fast is not None:
             poses, starts = _as_poses(array), drawn(chain, seed, 0, FIRST)
-            _ = chain.lane  # made once, before the threads ask for it
             tolerances = DEFAULT_TOLERANCE, DEFAULT_TOLERANCE if array.ndim == 3 else math.inf
+            chain.lane(array.ndim == 3)  # made once, before the threads ask for it
 
             def together(part: slice) -> NDArray[np.int64]:
                 ended = run_lane(chain, solver, fast, starts, tolerances, poses[part], bases[part], batch.q[part])

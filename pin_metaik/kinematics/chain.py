@@ -7,7 +7,6 @@ from collections.abc import Iterable, Mapping
 from functools import cached_property
 from threading import local
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -94,6 +93,7 @@ class Chain:
         self.kernels = _kernels()
         self._local = local()
         self._samples: dict[tuple[int, tuple[int, ...]], NDArray[np.float64]] = {}
+        self._lanes: dict[bool, tuple[NDArray[np.float64], NDArray[np.int64]]] = {}
         self._reaches: dict[tuple[int, bool], Reach] = {}
 
     @property
@@ -150,23 +150,22 @@ class Chain:
     @cached_property
     def atlas(self) -> Atlas:
         """Sampled configurations to look a pose up in; made on first use, in about 5 ms, always the same."""
-        X = self.box.sample(np.random.default_rng(SEED), LEAF * LEAF)
+        X = self.limits.one_turn().box().sample(np.random.default_rng(SEED), LEAF * LEAF)
         return chart(X, self.poses(X))
 
-    @cached_property
-    def lane(self) -> tuple[Any, ...]:
-        """What the fast lane takes of a chain with one frame."""
-        coordinates, joints = self.coordinates, self.model.joints
-        places = [(joints[int(j)].idx_q, joints[int(j)].nq == 2) for j in coordinates.joints]
-        places_of = np.array(places, dtype=np.int64)
-        return (
-            *self.paths.arrays,
-            *self.limits.arrays,
-            *self.atlas.arrays,
-            self._least,
-            self._most,
-            places_of,
-        )
+    def lane(self, oriented: bool) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """What the fast lane takes of a chain with one frame, for targets with or without an orientation."""
+        if oriented not in self._lanes:
+            joints = [self.model.joints[int(j)] for j in self.coordinates.joints]
+            self._lanes[oriented] = self.kernels.pack(
+                self.paths.arrays,
+                self.limits.arrays,
+                self.atlas.arrays,
+                (self._least, self._most),
+                np.array([(joint.idx_q, joint.nq == 2) for joint in joints], dtype=np.int64),
+                self.reach(0, oriented).array,
+            )
+        return self._lanes[oriented]
 
     def sample(self, count: int, seed: tuple[int, ...]) -> NDArray[np.float64]:
         """Coordinates (count, n) drawn uniformly from the box; one array for a seed, so not to be written to."""

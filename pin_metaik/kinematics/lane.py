@@ -7,9 +7,10 @@ import math
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit
-from pin_metaik.kinematics.descent import workspace
-from pin_metaik.kinematics.kernels import PATHS
-from pin_metaik.kinematics.searches import ATLAS, BOUNDS, search
+from pin_metaik.kinematics.atlas import LEAF
+from pin_metaik.kinematics.descent import Arm, Bounds, workspace
+from pin_metaik.kinematics.reach import ROUNDING
+from pin_metaik.kinematics.searches import Atlas, search
 
 ORTHONORMAL = 1e-6  # how far R'R may be from the identity
 POSITION = np.array([[0, 0], [0, 1], [0, 2]])  # the rows that count where orientation is free
@@ -41,24 +42,65 @@ def task_of(M: Floats, task: Floats) -> None:
         task[9 + i] = offset
 
 
+def pack(
+    arm: Arm, bounds: Bounds, atlas: Atlas, span: tuple[Floats, Floats], places: Ints, reach: Floats
+) -> tuple[Floats, Ints]:
+    """A chain in two blocks, because every argument of a compiled loop costs a call from Python another 90 ns.
+
+    Of the arguments those that ``search`` does not have: ``span`` are limits (nq,) of every entry of q; ``places``
+    (n, 2) is where in q a coordinate is and whether it is a pair (cos, sin); ``reach`` (8,) bounds the distance of the
+    tip's point (3,) from a world point (3,): least and most, m.
+    """
+    (joints, wiring, ends, tips), (lower, upper, winds), (leaves, entries, scale) = arm, bounds, atlas
+    numbers = joints, tips, lower, upper, leaves, entries, np.array([scale]), *span, reach
+    sizes = np.array([len(joints), len(lower), len(span[0]), len(leaves)])
+    whole = sizes, wiring, ends, winds, places
+    return np.concatenate([part.ravel() for part in numbers]), np.concatenate([part.ravel() for part in whole])
+
+
+@inline
+def unpack(numbers: Floats, whole: Ints) -> tuple[Arm, Bounds, Atlas, tuple[Floats, Floats], Ints, Floats]:
+    """What ``pack`` took."""
+    S, n, nq, L = whole[0], whole[1], whole[2], whole[3]
+    a = 14 * S + 12
+    b = a + 2 * n
+    c = b + 9 * LEAF * L
+    d = c + n * LEAF * (L - 1)
+    e = d + 1 + 2 * nq
+    arm = numbers[: 14 * S].reshape(S, 14), whole[4 : 4 + 2 * S].reshape(S, 2), whole[4 + 2 * S : 6 + 2 * S]
+    f = 6 + 2 * S
+    return (
+        (*arm, numbers[14 * S : a].reshape(1, 12)),
+        (numbers[a : a + n], numbers[a + n : b], whole[f : f + n]),
+        (numbers[b:c].reshape(L, 9, LEAF), numbers[c:d].reshape(LEAF * (L - 1), n), numbers[d]),
+        (numbers[d + 1 : d + 1 + nq], numbers[d + 1 + nq : e]),
+        whole[f + n : f + 3 * n].reshape(n, 2),
+        numbers[e : e + 8],
+    )
+
+
+@inline
+def out_of_reach(task: Floats, reach: Floats) -> bool:
+    """Whether every pose in the tolerances is proved to be farther away, or nearer, than the links can span."""
+    square = lever = 0.0
+    for i in range(3):  # the tip's point in the target frame, less the world's point there
+        away = reach[3 + i] - task[9 + i]
+        for j in range(3):
+            away -= task[3 * i + j] * reach[j]
+        square += away * away
+        lever += reach[3 + i] * reach[3 + i]
+    distance = math.sqrt(square)
+    allowed = ROUNDING + task[24] + (math.sqrt(lever) * task[25] if lever > 0.0 else 0.0)
+    return bool(distance > reach[7] + 1.01 * allowed or distance < reach[6] - 1.01 * allowed)
+
+
 @jit(
-    f"void({PATHS}, {BOUNDS}, {ATLAS}, f8[::1], f8[::1], i8[:,::1], i8[:,::1]?, f8[:,::1], f8, f8, i8, i8, f8, f8, "
+    "void(f8[::1], i8[::1], i8[:,::1]?, f8[:,::1], f8, f8, i8, i8, f8, f8, "
     "f8[:,:,::1], f8[:,::1], f8[:,::1], i8[:,::1])"
 )
 def solve_poses(
-    joints: Floats,
-    wiring: Ints,
-    ends: Ints,
-    tips: Floats,
-    lower: Floats,
-    upper: Floats,
-    winds: Ints,
-    leaves: Floats,
-    entries: Floats,
-    scale: float,
-    least: Floats,
-    most: Floats,
-    places: Ints,
+    numbers: Floats,
+    whole: Ints,
     rows: Ints | None,
     starts: Floats,
     damping: float,
@@ -74,17 +116,17 @@ def solve_poses(
 ) -> None:
     """``search`` for the poses (k, 4, 4) of one tip, each on its own; with the rows ``POSITION``, for their positions.
 
-    What ``search`` does not have: ``least`` and ``most`` (nq,) limit every entry of q; ``places`` (n, 2) is where in q
-    a coordinate is and whether it is a pair (cos, sin); ``near`` and ``aligned`` are the tolerances, m and rad; q0
-    (k, nq) is where to start from and what other joints keep. Row i of q (k, nq) and of ``ended`` (k, 2), evaluations
-    and one of SOLVED, UNSOLVED, NO_POSE, NO_START, is written.
+    ``numbers`` and ``whole`` are the packed chain; ``near`` and ``aligned`` the tolerances, m and rad; q0 (k, nq) is
+    where to start from and what other joints keep. Row i of q (k, nq) and of ``ended`` (k, 2), evaluations and one of
+    SOLVED, UNSOLVED, NO_POSE, NO_START, is written. What is proved to be out of reach is UNSOLVED at once.
     """
-    n = lower.shape[0]
+    arm, bounds, atlas, (least, most), places, reach = unpack(numbers, whole)
+    n = bounds[0].shape[0]
     tasks = np.zeros((1, 26))
     tasks[0, 15:18] = 0.0 if rows is None else np.inf
     tasks[0, 18:24] = 1.0
     tasks[0, 24], tasks[0, 25] = 0.999 * near, 0.999 * aligned
-    work = workspace(n, rows, joints.shape[0])
+    work = workspace(n, rows, arm[0].shape[0])
     own, best = starts.copy(), np.empty(n)
     for i in range(targets.shape[0]):
         ended[i, 0] = 0
@@ -102,18 +144,11 @@ def solve_poses(
             e = places[c, 0]
             own[0, c] = math.atan2(q[i, e + 1], q[i, e]) if places[c, 1] == 1 else q[i, e]
         task_of(targets[i], tasks[0])
-        spent, solved_by = search(
-            (joints, wiring, ends, tips),
-            tasks,
-            rows,
-            (lower, upper, winds),
-            (leaves, entries, scale),
-            own,
-            (damping, progress, per_start),
-            evaluations,
-            best,
-            work,
-        )
+        if out_of_reach(tasks[0], reach):
+            ended[i, 1] = UNSOLVED
+            continue
+        settings = damping, progress, per_start
+        spent, solved_by = search(arm, tasks, rows, bounds, atlas, own, settings, evaluations, best, work)
         ended[i, 0] = spent
         ended[i, 1] = SOLVED if solved_by >= 0 else UNSOLVED
         for c in range(n):

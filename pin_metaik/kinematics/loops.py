@@ -1,7 +1,7 @@
 """The compiled loops under one roof. Importing it takes half a second: ``Chain`` does so when the first one is made."""
 
 from pin_metaik.kinematics.kernels import costs, poses
-from pin_metaik.kinematics.lane import POSITION, SOLVED, UNSOLVED, solve_poses
+from pin_metaik.kinematics.lane import POSITION, SOLVED, UNSOLVED, pack, solve_poses
 from pin_metaik.kinematics.searches import descend, descend_all, linearize, neighbours
 
 __all__ = [
@@ -13,6 +13,7 @@ __all__ = [
     "descend_all",
     "linearize",
     "neighbours",
+    "pack",
     "poses",
     "solve_poses",
 ]

@@ -7,6 +7,7 @@ from typing import TypeAlias
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit, shared
+from pin_metaik.kinematics.atlas import LEAF
 from pin_metaik.kinematics.descent import Arm, Bounds, Settings, Work, descend_from, evaluate, workspace
 from pin_metaik.kinematics.kernels import PATHS, copy, forward
 
@@ -17,7 +18,7 @@ Atlas: TypeAlias = tuple[Floats, Floats, float]  # leaves, entries, scale
 TURN = 2.0 * np.pi
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
 
-LEAF, OPENED, TRIED = 64, 4, 6  # entries in a leaf of the atlas, leaves opened, entries tried before the given starts
+OPENED, TRIED = 4, 12  # leaves of the atlas that are opened, entries tried before the given starts
 
 
 @jit(f"Tuple((f8, b1))({PATHS}, f8[:,::1], i8[:,::1], f8[::1], f8[::1], f8[:,::1])")
