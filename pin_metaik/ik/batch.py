@@ -19,7 +19,7 @@ from pin_metaik.ik.fast import run_lane
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solve import solve_one
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
-from pin_metaik.ik.starts import FIRST, Rng, drawn
+from pin_metaik.ik.starts import LANE, Rng, drawn
 from pin_metaik.ik.target import DEFAULT_TOLERANCE, Target, TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.pose import ORTHONORMAL
@@ -120,7 +120,7 @@ def solve_ik_batch(
     with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
         left: Iterable[int] = range(k)
         if array is not None and fast is not None:
-            poses, starts = _as_poses(array), drawn(chain, seed, 0, FIRST)
+            poses, starts = _as_poses(array), drawn(chain, seed, 0, LANE)
             tolerances = DEFAULT_TOLERANCE, DEFAULT_TOLERANCE if array.ndim == 3 else math.inf
             chain.lane(array.ndim == 3)  # made once, before the threads ask for it
 

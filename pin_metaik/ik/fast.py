@@ -17,7 +17,7 @@ from pin_metaik.ik.refine.dls import DLS, PROGRESS
 from pin_metaik.ik.refine.protocol import Refinement
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solver import IKSolver
-from pin_metaik.ik.starts import FIRST, Rng, drawn
+from pin_metaik.ik.starts import LANE, Rng, drawn
 from pin_metaik.ik.target import DEFAULT_TOLERANCE, Target
 from pin_metaik.kinematics import Chain
 
@@ -80,7 +80,7 @@ def solve_fast(
     if start.shape != chain.reference.shape:
         return None
     q = np.empty((1, len(start)))
-    starts = drawn(chain, rng, 0, FIRST)
+    starts = drawn(chain, rng, 0, LANE)
     ended = run_lane(
         chain, solver, dls, starts, tolerances, np.ascontiguousarray(goal.homogeneous)[None], start[None], q
     )

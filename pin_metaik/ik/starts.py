@@ -14,7 +14,8 @@ from pin_metaik.kinematics import Chain
 Rng: TypeAlias = int | np.random.Generator | None
 
 DEFAULT_SEED = 0
-FIRST, BATCH = 64, 64  # starts refined before the first look at the clock and at the reach, and between further ones
+LANE = 256  # starts of the fast lane
+FIRST, BATCH = 16, 64  # starts refined before the first look at the clock and at the reach, and between further ones
 
 
 def start_batches(

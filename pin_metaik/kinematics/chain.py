@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from functools import cached_property
 from threading import local
 from types import ModuleType
+from typing import TypeAlias
 
 import numpy as np
 import pinocchio as pin
@@ -19,6 +20,8 @@ from pin_metaik.kinematics.limits import Limits, finite_or_infinite
 from pin_metaik.kinematics.paths import lay_paths, motion_of
 from pin_metaik.kinematics.reach import Reach, reach_of
 from pin_metaik.optimize import Box
+
+Lane: TypeAlias = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float32]]
 
 REMEMBERED = 16  # sets of samples kept
 
@@ -93,7 +96,7 @@ class Chain:
         self.kernels = _kernels()
         self._local = local()
         self._samples: dict[tuple[int, tuple[int, ...]], NDArray[np.float64]] = {}
-        self._lanes: dict[bool, tuple[NDArray[np.float64], NDArray[np.int64]]] = {}
+        self._lanes: dict[bool, Lane] = {}
         self._reaches: dict[tuple[int, bool], Reach] = {}
 
     @property
@@ -151,9 +154,16 @@ class Chain:
     def atlas(self) -> Atlas:
         """Sampled configurations to look a pose up in; made on first use, in about 5 ms, always the same."""
         X = self.limits.one_turn().box().sample(np.random.default_rng(SEED), LEAF * LEAF)
-        return chart(X, self.poses(X))
+        return chart(X, self.poses(X), self._gains)
 
-    def lane(self, oriented: bool) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    def _gains(self, X: NDArray[np.float64]) -> NDArray[np.float32]:
+        """Gains (k, n, 6) for the atlas at coordinates X (k, n); zero for a chain with several frames."""
+        gains = np.zeros((*X.shape, 6), np.float32)
+        if len(self.frames) == 1:
+            self.kernels.gains_of(*self.paths.arrays, X, gains)
+        return gains
+
+    def lane(self, oriented: bool) -> Lane:
         """What the fast lane takes of a chain with one frame, for targets with or without an orientation."""
         if oriented not in self._lanes:
             joints = [self.model.joints[int(j)] for j in self.coordinates.joints]

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit
 from pin_metaik.kinematics.atlas import LEAF
 from pin_metaik.kinematics.descent import Arm, Bounds, workspace
+from pin_metaik.kinematics.guesses import Atlas
 from pin_metaik.kinematics.reach import ROUNDING
-from pin_metaik.kinematics.searches import Atlas, search
+from pin_metaik.kinematics.searches import search
 
 ORTHONORMAL = 1e-6  # how far R'R may be from the identity
 POSITION = np.array([[0, 0], [0, 1], [0, 2]])  # the rows that count where orientation is free
@@ -44,22 +46,27 @@ def task_of(M: Floats, task: Floats) -> None:
 
 def pack(
     arm: Arm, bounds: Bounds, atlas: Atlas, span: tuple[Floats, Floats], places: Ints, reach: Floats
-) -> tuple[Floats, Ints]:
-    """A chain in two blocks, because every argument of a compiled loop costs a call from Python another 90 ns.
+) -> tuple[Floats, Ints, Floats]:
+    """A chain in three blocks, because every argument of a compiled loop costs a call from Python another 90 ns.
 
     Of the arguments those that ``search`` does not have: ``span`` are limits (nq,) of every entry of q; ``places``
     (n, 2) is where in q a coordinate is and whether it is a pair (cos, sin); ``reach`` (8,) bounds the distance of the
     tip's point (3,) from a world point (3,): least and most, m.
     """
-    (joints, wiring, ends, tips), (lower, upper, winds), (leaves, entries, scale) = arm, bounds, atlas
+    (joints, wiring, ends, tips), (lower, upper, winds), (leaves, entries, gains, scale) = arm, bounds, atlas
     numbers = joints, tips, lower, upper, leaves, entries, np.array([scale]), *span, reach
     sizes = np.array([len(joints), len(lower), len(span[0]), len(leaves)])
-    whole = sizes, wiring, ends, winds, places
-    return np.concatenate([part.ravel() for part in numbers]), np.concatenate([part.ravel() for part in whole])
+    return _joined(numbers), _joined((sizes, wiring, ends, winds, places)), gains
+
+
+def _joined(parts: tuple[Floats | Ints, ...]) -> Any:
+    return np.concatenate([part.ravel() for part in parts])
 
 
 @inline
-def unpack(numbers: Floats, whole: Ints) -> tuple[Arm, Bounds, Atlas, tuple[Floats, Floats], Ints, Floats]:
+def unpack(
+    numbers: Floats, whole: Ints, gains: Floats
+) -> tuple[Arm, Bounds, Atlas, tuple[Floats, Floats], Ints, Floats]:
     """What ``pack`` took."""
     S, n, nq, L = whole[0], whole[1], whole[2], whole[3]
     a = 14 * S + 12
@@ -72,7 +79,7 @@ def unpack(numbers: Floats, whole: Ints) -> tuple[Arm, Bounds, Atlas, tuple[Floa
     return (
         (*arm, numbers[14 * S : a].reshape(1, 12)),
         (numbers[a : a + n], numbers[a + n : b], whole[f : f + n]),
-        (numbers[b:c].reshape(L, 9, LEAF), numbers[c:d].reshape(LEAF * (L - 1), n), numbers[d]),
+        (numbers[b:c].reshape(L, 9, LEAF), numbers[c:d].reshape(LEAF * (L - 1), n), gains, numbers[d]),
         (numbers[d + 1 : d + 1 + nq], numbers[d + 1 + nq : e]),
         whole[f + n : f + 3 * n].reshape(n, 2),
         numbers[e : e + 8],
@@ -95,12 +102,13 @@ def out_of_reach(task: Floats, reach: Floats) -> bool:
 
 
 @jit(
-    "void(f8[::1], i8[::1], i8[:,::1]?, f8[:,::1], f8, f8, i8, i8, f8, f8, "
+    "void(f8[::1], i8[::1], f4[:,:,::1], i8[:,::1]?, f8[:,::1], f8, f8, i8, i8, f8, f8, "
     "f8[:,:,::1], f8[:,::1], f8[:,::1], i8[:,::1])"
 )
 def solve_poses(
     numbers: Floats,
     whole: Ints,
+    gains: Floats,
     rows: Ints | None,
     starts: Floats,
     damping: float,
@@ -116,18 +124,18 @@ def solve_poses(
 ) -> None:
     """``search`` for the poses (k, 4, 4) of one tip, each on its own; with the rows ``POSITION``, for their positions.
 
-    ``numbers`` and ``whole`` are the packed chain; ``near`` and ``aligned`` the tolerances, m and rad; q0 (k, nq) is
-    where to start from and what other joints keep. Row i of q (k, nq) and of ``ended`` (k, 2), evaluations and one of
-    SOLVED, UNSOLVED, NO_POSE, NO_START, is written. What is proved to be out of reach is UNSOLVED at once.
+    ``numbers``, ``whole`` and ``gains`` are the packed chain; ``near`` and ``aligned`` the tolerances, m and rad; q0
+    (k, nq) is where to start from and what other joints keep. Row i of q (k, nq) and of ``ended`` (k, 2), evaluations
+    and one of SOLVED, UNSOLVED, NO_POSE, NO_START, is written. What is proved to be out of reach is UNSOLVED at once.
     """
-    arm, bounds, atlas, (least, most), places, reach = unpack(numbers, whole)
+    arm, bounds, atlas, (least, most), places, reach = unpack(numbers, whole, gains)
     n = bounds[0].shape[0]
     tasks = np.zeros((1, 26))
     tasks[0, 15:18] = 0.0 if rows is None else np.inf
     tasks[0, 18:24] = 1.0
     tasks[0, 24], tasks[0, 25] = 0.999 * near, 0.999 * aligned
     work = workspace(n, rows, arm[0].shape[0])
-    own, best = starts.copy(), np.empty(n)
+    guess, best = np.empty(n), np.empty(n)
     for i in range(targets.shape[0]):
         ended[i, 0] = 0
         if not is_pose(targets[i]):
@@ -142,13 +150,13 @@ def solve_poses(
             continue
         for c in range(n):
             e = places[c, 0]
-            own[0, c] = math.atan2(q[i, e + 1], q[i, e]) if places[c, 1] == 1 else q[i, e]
+            guess[c] = math.atan2(q[i, e + 1], q[i, e]) if places[c, 1] == 1 else q[i, e]
         task_of(targets[i], tasks[0])
         if out_of_reach(tasks[0], reach):
             ended[i, 1] = UNSOLVED
             continue
         settings = damping, progress, per_start
-        spent, solved_by = search(arm, tasks, rows, bounds, atlas, own, settings, evaluations, best, work)
+        spent, solved_by = search(arm, tasks, rows, bounds, atlas, guess, starts, settings, evaluations, best, work)
         ended[i, 0] = spent
         ended[i, 1] = SOLVED if solved_by >= 0 else UNSOLVED
         for c in range(n):

@@ -1,5 +1,6 @@
 """The compiled loops under one roof. Importing it takes half a second: ``Chain`` does so when the first one is made."""
 
+from pin_metaik.kinematics.guesses import gains_of
 from pin_metaik.kinematics.kernels import costs, poses
 from pin_metaik.kinematics.lane import POSITION, SOLVED, UNSOLVED, pack, solve_poses
 from pin_metaik.kinematics.searches import descend, descend_all, linearize, neighbours
@@ -11,6 +12,7 @@ __all__ = [
     "costs",
     "descend",
     "descend_all",
+    "gains_of",
     "linearize",
     "neighbours",
     "pack",
