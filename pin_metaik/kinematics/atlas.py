@@ -25,7 +25,8 @@ class Atlas:
     """Sampled coordinates with the features of their poses.
 
     A feature (9 T,) is, for each tip, its position and its x and z axes, the axes times ``scale`` (m), so that
-    Euclidean distances between features weigh metres against turns.
+    Euclidean distances between features weigh metres against turns. All in single precision: a start need not be more
+    precise, and all of it then stays in the cache.
 
     Attributes:
         leaves: (1 + c, 9 T, LEAF) features by column: leaf 0 holds the means of the c others.
@@ -35,13 +36,13 @@ class Atlas:
         scale: m.
     """
 
-    leaves: NDArray[np.float64]
-    x: NDArray[np.float64]
+    leaves: NDArray[np.float32]
+    x: NDArray[np.float32]
     gains: NDArray[np.float32]
     scale: float
 
     @property
-    def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float32], float]:
+    def arrays(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32], float]:
         """The arrays in the order in which the descent takes them."""
         return self.leaves, self.x, self.gains, self.scale
 
@@ -49,7 +50,8 @@ class Atlas:
 @cache
 def no_atlas(n: int, tips: int) -> Atlas:
     """An atlas without entries, for descents from given starts only."""
-    return Atlas(np.empty((0, 9 * tips, LEAF)), np.empty((0, n)), np.empty((0, n, 6), np.float32), 1.0)
+    none = np.zeros(0, np.float32)
+    return Atlas(none.reshape(0, 9 * tips, LEAF), none.reshape(0, n), none.reshape(0, n, 6), 1.0)
 
 
 def chart(
@@ -66,7 +68,8 @@ def chart(
     order = _leaves(features, np.arange(len(x)))
     leaves = features[order].reshape(-1, LEAF, features.shape[1])
     leaves = np.concatenate([leaves.mean(axis=1)[None], leaves])
-    return Atlas(np.ascontiguousarray(leaves.transpose(0, 2, 1)), x[order], gains(x[order]), scale)
+    columns = np.ascontiguousarray(leaves.transpose(0, 2, 1), dtype=np.float32)
+    return Atlas(columns, x[order].astype(np.float32), gains(x[order]), scale)
 
 
 def _leaves(features: NDArray[np.float64], members: NDArray[np.int64]) -> NDArray[np.int64]:

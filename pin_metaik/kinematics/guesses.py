@@ -15,22 +15,22 @@ from typing import TypeAlias
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, inline, jit
+from pin_metaik.compiled import Floats, Ints, Singles, inline, jit
 from pin_metaik.kinematics.atlas import LEAF
 from pin_metaik.kinematics.descent import Arm, Bounds, Work, evaluate_pose, solve_symmetric, workspace
 from pin_metaik.kinematics.kernels import PATHS, copy, forward, pose_error
 
-ATLAS = "f8[:,:,::1], f8[:,::1], f4[:,:,::1], f8"
-Atlas: TypeAlias = tuple[Floats, Floats, Floats, float]  # leaves, entries, gains, scale
+ATLAS = "f4[:,:,::1], f4[:,::1], f4[:,:,::1], f8"
+Atlas: TypeAlias = tuple[Singles, Singles, Singles, float]  # leaves, entries, gains, scale
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-OPENED, TRIED = 4, 12  # leaves of the atlas that are opened, entries that are tried
+OPENED, TRIED = 4, 8  # leaves of the atlas that are opened, entries that are tried
 GAIN_DAMPING = 1e-3  # m^2 or rad^2
 LENGTH = 0.1  # what a radian of the step counts against one that the limits do not allow
 
 
 @inline
-def target_feature(tasks: Floats, scale: float, goal: Floats, weights: Floats) -> None:
+def target_feature(tasks: Floats, scale: float, goal: Singles, weights: Singles) -> None:
     """Feature (9 T,) of the targets as the atlas has it, and weight 0 where they leave position or orientation free."""
     for t in range(tasks.shape[0]):
         task, at = tasks[t], 9 * t
@@ -46,14 +46,15 @@ def target_feature(tasks: Floats, scale: float, goal: Floats, weights: Floats) -
 
 @inline
 def merge_nearest(
-    leaf: Floats, number: int, goal: Floats, weights: Floats, away: Floats, found: Ints, distances: Floats
+    leaf: Singles, number: int, goal: Singles, weights: Singles, away: Singles, found: Ints, distances: Singles
 ) -> None:
     """Merge the columns of a leaf (9 T, LEAF) into the nearest found so far, nearest first."""
     away[:] = 0.0
     for j in range(0, goal.shape[0], 3):  # three rows at a time: a third of the loads and stores
-        f, g, h = goal[j], goal[j + 1], goal[j + 2]
+        f, g, h, weight = goal[j], goal[j + 1], goal[j + 2], weights[j]
         for i in range(LEAF):
-            away[i] += weights[j] * ((leaf[j, i] - f) ** 2 + (leaf[j + 1, i] - g) ** 2 + (leaf[j + 2, i] - h) ** 2)
+            a, b, c = leaf[j, i] - f, leaf[j + 1, i] - g, leaf[j + 2, i] - h
+            away[i] += weight * (a * a + b * b + c * c)
     last = distances.shape[0] - 1
     for i in range(LEAF):
         if away[i] < distances[last]:
@@ -65,10 +66,11 @@ def merge_nearest(
 
 
 @inline
-def look_up(leaves: Floats, goal: Floats, weights: Floats, found: Ints, distances: Floats) -> None:
+def look_up(leaves: Singles, goal: Singles, weights: Singles, found: Ints, distances: Singles) -> None:
     """The atlas entries nearest to the goal: found (c,), nearest first, with their squared distances."""
-    away = np.empty(LEAF)
-    opened, spans = np.empty(OPENED, np.int64), np.full(OPENED, np.inf)
+    away = np.empty(LEAF, np.float32)
+    opened, spans = np.empty(OPENED, np.int64), np.empty(OPENED, np.float32)
+    spans[:] = np.inf
     merge_nearest(leaves[0], 0, goal, weights, away, opened, spans)
     distances[:] = np.inf
     for k in range(OPENED):
@@ -77,7 +79,7 @@ def look_up(leaves: Floats, goal: Floats, weights: Floats, found: Ints, distance
 
 
 @inline
-def feature_distance(arm: Arm, x: Floats, scale: float, goal: Floats, weights: Floats, work: Work) -> float:
+def feature_distance(arm: Arm, x: Floats, scale: float, goal: Singles, weights: Singles, work: Work) -> float:
     """Squared distance of the feature at x (n,) from the goal's."""
     joints, wiring, ends, tips = arm
     axes, origins, pose = work[0], work[1], work[2]
@@ -92,7 +94,7 @@ def feature_distance(arm: Arm, x: Floats, scale: float, goal: Floats, weights: F
 
 
 @inline
-def entry_error(task: Floats, leaf: Floats, i: int, scale: float, pose: Floats, error: Floats) -> None:
+def entry_error(task: Floats, leaf: Singles, i: int, scale: float, pose: Floats, error: Floats) -> None:
     """Translation and rotation vector (6,) of column i of a leaf, in its own frame, from a target."""
     inverse = 1.0 / scale
     xx, xy, xz = inverse * leaf[3, i], inverse * leaf[4, i], inverse * leaf[5, i]
@@ -112,14 +114,14 @@ def entry_error(task: Floats, leaf: Floats, i: int, scale: float, pose: Floats, 
 
 @inline
 def suggest(
-    tasks: Floats, rows: Ints | None, bounds: Bounds, atlas: Atlas, goal: Floats, weights: Floats, out: Floats
+    tasks: Floats, rows: Ints | None, bounds: Bounds, atlas: Atlas, goal: Singles, weights: Singles, out: Floats
 ) -> float:
     """Starts (TRIED, n), the most promising first, and the squared distance of the nearest entry's pose.
 
     With ``rows``, for anything but one whole pose, they are the entries with the nearest poses as they are.
     """
     leaves, entries, gains, scale = atlas
-    order, distances = np.empty(TRIED, np.int64), np.empty(TRIED)
+    order, distances = np.empty(TRIED, np.int64), np.empty(TRIED, np.float32)
     look_up(leaves, goal, weights, order, distances)
     if rows is not None:
         for k in range(TRIED):
@@ -153,7 +155,7 @@ def suggest(
 
 
 @jit(f"void({PATHS}, f8[:,::1], f4[:,:,::1])")
-def gains_of(joints: Floats, wiring: Ints, ends: Ints, tips: Floats, X: Floats, out: Floats) -> None:
+def gains_of(joints: Floats, wiring: Ints, ends: Ints, tips: Floats, X: Floats, out: Singles) -> None:
     """Gains (k, n, 6) of one tip at X (k, n): J' (J J' + GAIN_DAMPING I)^-1, with J in the tip's frame."""
     n = X.shape[1]
     arm = joints, wiring, ends, tips

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, inline, jit
+from pin_metaik.compiled import Floats, Ints, Singles, inline, jit
 from pin_metaik.kinematics.atlas import LEAF
 from pin_metaik.kinematics.descent import Arm, Bounds, workspace
 from pin_metaik.kinematics.guesses import Atlas
@@ -46,43 +46,44 @@ def task_of(M: Floats, task: Floats) -> None:
 
 def pack(
     arm: Arm, bounds: Bounds, atlas: Atlas, span: tuple[Floats, Floats], places: Ints, reach: Floats
-) -> tuple[Floats, Ints, Floats]:
-    """A chain in three blocks, because every argument of a compiled loop costs a call from Python another 90 ns.
+) -> tuple[Floats, Ints, Singles]:
+    """A chain in three blocks: numbers, whole numbers and the atlas.
 
-    Of the arguments those that ``search`` does not have: ``span`` are limits (nq,) of every entry of q; ``places``
-    (n, 2) is where in q a coordinate is and whether it is a pair (cos, sin); ``reach`` (8,) bounds the distance of the
-    tip's point (3,) from a world point (3,): least and most, m.
+    Every argument of a compiled loop costs a call from Python another 90 ns. Of these arguments ``search`` does not
+    have ``span``, limits (nq,) of every entry of q; ``places`` (n, 2), where in q a coordinate is and whether it is a
+    pair (cos, sin); and ``reach`` (8,), what bounds the distance of the tip's point from a world point.
     """
     (joints, wiring, ends, tips), (lower, upper, winds), (leaves, entries, gains, scale) = arm, bounds, atlas
-    numbers = joints, tips, lower, upper, leaves, entries, np.array([scale]), *span, reach
+    numbers = joints, tips, lower, upper, np.array([scale]), *span, reach
     sizes = np.array([len(joints), len(lower), len(span[0]), len(leaves)])
-    return _joined(numbers), _joined((sizes, wiring, ends, winds, places)), gains
+    return _joined(numbers), _joined((sizes, wiring, ends, winds, places)), _joined((leaves, entries, gains))
 
 
-def _joined(parts: tuple[Floats | Ints, ...]) -> Any:
+def _joined(parts: tuple[Floats | Ints | Singles, ...]) -> Any:
     return np.concatenate([part.ravel() for part in parts])
 
 
 @inline
 def unpack(
-    numbers: Floats, whole: Ints, gains: Floats
+    numbers: Floats, whole: Ints, tables: Singles
 ) -> tuple[Arm, Bounds, Atlas, tuple[Floats, Floats], Ints, Floats]:
     """What ``pack`` took."""
     S, n, nq, L = whole[0], whole[1], whole[2], whole[3]
     a = 14 * S + 12
     b = a + 2 * n
-    c = b + 9 * LEAF * L
-    d = c + n * LEAF * (L - 1)
-    e = d + 1 + 2 * nq
-    arm = numbers[: 14 * S].reshape(S, 14), whole[4 : 4 + 2 * S].reshape(S, 2), whole[4 + 2 * S : 6 + 2 * S]
-    f = 6 + 2 * S
+    c = b + 1 + 2 * nq
+    d = 6 + 2 * S
+    e = 9 * LEAF * L
+    k = LEAF * (L - 1)
+    wiring, ends = whole[4 : 4 + 2 * S].reshape(S, 2), whole[4 + 2 * S : d]
+    leaves, entries, gains = tables[:e], tables[e : e + k * n], tables[e + k * n :]
     return (
-        (*arm, numbers[14 * S : a].reshape(1, 12)),
-        (numbers[a : a + n], numbers[a + n : b], whole[f : f + n]),
-        (numbers[b:c].reshape(L, 9, LEAF), numbers[c:d].reshape(LEAF * (L - 1), n), gains, numbers[d]),
-        (numbers[d + 1 : d + 1 + nq], numbers[d + 1 + nq : e]),
-        whole[f + n : f + 3 * n].reshape(n, 2),
-        numbers[e : e + 8],
+        (numbers[: 14 * S].reshape(S, 14), wiring, ends, numbers[14 * S : a].reshape(1, 12)),
+        (numbers[a : a + n], numbers[a + n : b], whole[d : d + n]),
+        (leaves.reshape(L, 9, LEAF), entries.reshape(k, n), gains.reshape(k, n, 6), numbers[b]),
+        (numbers[b + 1 : b + 1 + nq], numbers[b + 1 + nq : c]),
+        whole[d + n : d + 3 * n].reshape(n, 2),
+        numbers[c : c + 8],
     )
 
 
@@ -102,13 +103,13 @@ def out_of_reach(task: Floats, reach: Floats) -> bool:
 
 
 @jit(
-    "void(f8[::1], i8[::1], f4[:,:,::1], i8[:,::1]?, f8[:,::1], f8, f8, i8, i8, f8, f8, "
+    "void(f8[::1], i8[::1], f4[::1], i8[:,::1]?, f8[:,::1], f8, f8, i8, i8, f8, f8, "
     "f8[:,:,::1], f8[:,::1], f8[:,::1], i8[:,::1])"
 )
 def solve_poses(
     numbers: Floats,
     whole: Ints,
-    gains: Floats,
+    tables: Singles,
     rows: Ints | None,
     starts: Floats,
     damping: float,
@@ -124,11 +125,11 @@ def solve_poses(
 ) -> None:
     """``search`` for the poses (k, 4, 4) of one tip, each on its own; with the rows ``POSITION``, for their positions.
 
-    ``numbers``, ``whole`` and ``gains`` are the packed chain; ``near`` and ``aligned`` the tolerances, m and rad; q0
+    ``numbers``, ``whole`` and ``tables`` are the packed chain; ``near`` and ``aligned`` the tolerances, m and rad; q0
     (k, nq) is where to start from and what other joints keep. Row i of q (k, nq) and of ``ended`` (k, 2), evaluations
     and one of SOLVED, UNSOLVED, NO_POSE, NO_START, is written. What is proved to be out of reach is UNSOLVED at once.
     """
-    arm, bounds, atlas, (least, most), places, reach = unpack(numbers, whole, gains)
+    arm, bounds, atlas, (least, most), places, reach = unpack(numbers, whole, tables)
     n = bounds[0].shape[0]
     tasks = np.zeros((1, 26))
     tasks[0, 15:18] = 0.0 if rows is None else np.inf

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, inline, jit, shared
+from pin_metaik.compiled import Floats, Ints, Singles, inline, jit, shared
 from pin_metaik.kinematics.atlas import LEAF
 from pin_metaik.kinematics.descent import Arm, Bounds, Settings, Work, descend_from, evaluate, workspace
 from pin_metaik.kinematics.guesses import (
@@ -80,7 +80,7 @@ def search(
     suggested = np.empty((tried, guess.shape[0]))
     own = 0
     if tried > 0:
-        goal, weights = np.empty(9 * T), np.empty(9 * T)
+        goal, weights = np.empty(9 * T, np.float32), np.empty(9 * T, np.float32)
         target_feature(tasks, atlas[3], goal, weights)
         nearest = suggest(tasks, rows, bounds, atlas, goal, weights, suggested)
         own = 0 if feature_distance(arm, guess, atlas[3], goal, weights, work) <= nearest else tried
@@ -110,13 +110,14 @@ def search(
 
 @jit(f"void(f8[:,::1], {ATLAS}, i8, f8[:,::1])")
 def neighbours(
-    tasks: Floats, leaves: Floats, entries: Floats, gains: Floats, scale: float, count: int, out: Floats
+    tasks: Floats, leaves: Singles, entries: Singles, gains: Singles, scale: float, count: int, out: Floats
 ) -> None:
     """The ``count`` atlas entries (count, n) nearest to the targets, nearest first."""
     T = tasks.shape[0]
-    goal, weights, away = np.empty(9 * T), np.empty(9 * T), np.empty(LEAF)
+    goal, weights, away = np.empty(9 * T, np.float32), np.empty(9 * T, np.float32), np.empty(LEAF, np.float32)
     target_feature(tasks, scale, goal, weights)
-    order, distances = np.zeros(count, np.int64), np.full(count, np.inf)
+    order, distances = np.zeros(count, np.int64), np.empty(count, np.float32)
+    distances[:] = np.inf
     for leaf in range(leaves.shape[0] - 1):
         merge_nearest(leaves[1 + leaf], leaf, goal, weights, away, order, distances)
     for k in range(count):
@@ -139,9 +140,9 @@ def descend(
     lower: Floats,
     upper: Floats,
     winds: Ints,
-    leaves: Floats,
-    entries: Floats,
-    gains: Floats,
+    leaves: Singles,
+    entries: Singles,
+    gains: Singles,
     scale: float,
     starts: Floats,
     damping: float,
