@@ -70,16 +70,26 @@ def _place_of_optional(signature: str) -> int | None:
     return next((i for i, one in enumerate(arguments.split(",")) if "?" in one), None)
 
 
+# Parts of loops see arrays but neither make nor return any, so that nobody need count who holds them: counting took
+# a third of the time of a descent.
+PART: dict[str, Any] = {**OPTIONS, "_nrt": False}
+
+
 def inline(function: F) -> F:
     """A part of a loop: compiled into each loop that calls it, with what is constant there."""
-    return cast(F, numba.njit(fastmath=LOOSE, forceinline=True, **OPTIONS)(function))
+    return cast(F, numba.njit(fastmath=LOOSE, forceinline=True, **PART)(function))
 
 
 def shared(function: F) -> F:
     """A part that several loops call: compiled once, for all of them."""
-    return cast(F, numba.njit(fastmath=LOOSE, **OPTIONS)(function))
+    return cast(F, numba.njit(fastmath=LOOSE, **PART)(function))
 
 
 def exact(function: F) -> F:
     """A part of a loop whose roundings must come in the order written."""
-    return cast(F, numba.njit(fastmath={"contract"}, forceinline=True, **OPTIONS)(function))
+    return cast(F, numba.njit(fastmath={"contract"}, forceinline=True, **PART)(function))
+
+
+def allocating(function: F) -> F:
+    """What makes arrays for a loop, before it begins, or returns parts of them."""
+    return cast(F, numba.njit(**OPTIONS)(function))

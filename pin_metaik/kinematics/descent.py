@@ -16,7 +16,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, inline, shared
+from pin_metaik.compiled import Floats, Ints, allocating, inline, shared
 from pin_metaik.kinematics.kernels import copy, forward, jacobian, pose_error, residual
 
 PATIENCE = 4  # steps that must bring the squared error below `progress`, or the start is given up
@@ -29,7 +29,7 @@ Settings: TypeAlias = tuple[float, float, int]  # damping, progress, evaluations
 Work: TypeAlias = tuple[Floats, ...]
 
 
-@shared
+@allocating
 def workspace(n: int, rows: Ints | None, S: int) -> Work:
     """Scratch arrays of a descent: one allocation for all starts."""
     m = 6 if rows is None else rows.shape[0]

@@ -15,18 +15,35 @@ from typing import TypeAlias
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, Singles, inline, jit
+from pin_metaik.compiled import Floats, Ints, Singles, allocating, inline, jit
 from pin_metaik.kinematics.atlas import LEAF
 from pin_metaik.kinematics.descent import Arm, Bounds, Work, evaluate_pose, solve_symmetric, workspace
 from pin_metaik.kinematics.kernels import PATHS, copy, forward, pose_error
 
 ATLAS = "f4[:,:,::1], f4[:,::1], f4[:,:,::1], f8"
 Atlas: TypeAlias = tuple[Singles, Singles, Singles, float]  # leaves, entries, gains, scale
+Looks: TypeAlias = tuple[Floats, Singles, Singles, Singles, Ints, Singles, Ints, Singles, Floats]
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
 OPENED, TRIED = 4, 8  # leaves of the atlas that are opened, entries that are tried
 GAIN_DAMPING = 1e-3  # m^2 or rad^2
 LENGTH = 0.1  # what a radian of the step counts against one that the limits do not allow
+
+
+@allocating
+def lookup_space(n: int, T: int) -> Looks:
+    """Scratch arrays of look-ups: starts (TRIED, n), feature of the target and weights (9 T,), and what is nearest."""
+    return (
+        np.empty((TRIED, n)),
+        np.empty(9 * T, np.float32),
+        np.empty(9 * T, np.float32),
+        np.empty(LEAF, np.float32),
+        np.empty(OPENED, np.int64),
+        np.empty(OPENED, np.float32),
+        np.empty(TRIED, np.int64),
+        np.empty(TRIED, np.float32),
+        np.empty(TRIED),
+    )
 
 
 @inline
@@ -66,16 +83,15 @@ def merge_nearest(
 
 
 @inline
-def look_up(leaves: Singles, goal: Singles, weights: Singles, found: Ints, distances: Singles) -> None:
-    """The atlas entries nearest to the goal: found (c,), nearest first, with their squared distances."""
-    away = np.empty(LEAF, np.float32)
-    opened, spans = np.empty(OPENED, np.int64), np.empty(OPENED, np.float32)
+def look_up(leaves: Singles, looks: Looks) -> None:
+    """The atlas entries nearest to the goal (TRIED,), nearest first, with their squared distances."""
+    _, goal, weights, away, opened, spans, order, distances, _ = looks
     spans[:] = np.inf
     merge_nearest(leaves[0], 0, goal, weights, away, opened, spans)
     distances[:] = np.inf
     for k in range(OPENED):
         leaf = opened[k]
-        merge_nearest(leaves[1 + leaf], leaf, goal, weights, away, found, distances)
+        merge_nearest(leaves[1 + leaf], leaf, goal, weights, away, order, distances)
 
 
 @inline
@@ -113,24 +129,21 @@ def entry_error(task: Floats, leaf: Singles, i: int, scale: float, pose: Floats,
 
 
 @inline
-def suggest(
-    tasks: Floats, rows: Ints | None, bounds: Bounds, atlas: Atlas, goal: Singles, weights: Singles, out: Floats
-) -> float:
-    """Starts (TRIED, n), the most promising first, and the squared distance of the nearest entry's pose.
+def suggest(tasks: Floats, rows: Ints | None, bounds: Bounds, atlas: Atlas, work: Work, looks: Looks) -> float:
+    """Starts (TRIED, n), the most promising first; returns the squared distance of the nearest entry's pose.
 
     With ``rows``, for anything but one whole pose, they are the entries with the nearest poses as they are.
     """
     leaves, entries, gains, scale = atlas
-    order, distances = np.empty(TRIED, np.int64), np.empty(TRIED, np.float32)
-    look_up(leaves, goal, weights, order, distances)
+    out, _, _, _, _, _, order, distances, doubts = looks
+    look_up(leaves, looks)
     if rows is not None:
         for k in range(TRIED):
             copy(entries[order[k]], out[k])
         return float(distances[0])
     lower, upper, _ = bounds
-    n = out.shape[1]
-    pose, error, x = np.empty(12), np.empty(6), np.empty(n)
-    doubts = np.empty(TRIED)
+    pose, error, x = work[2], work[3], work[10]
+    n = x.shape[0]
     for k in range(TRIED):
         entry = order[k]
         entry_error(tasks[0], leaves[1 + entry // LEAF], entry % LEAF, scale, pose, error)

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, Singles, inline, jit
+from pin_metaik.compiled import Floats, Ints, Singles, allocating, inline, jit
 from pin_metaik.kinematics.atlas import LEAF
 from pin_metaik.kinematics.descent import Arm, Bounds, workspace
-from pin_metaik.kinematics.guesses import Atlas
+from pin_metaik.kinematics.guesses import Atlas, lookup_space
 from pin_metaik.kinematics.reach import ROUNDING
 from pin_metaik.kinematics.searches import search
 
@@ -63,7 +63,7 @@ def _joined(parts: tuple[Floats | Ints | Singles, ...]) -> Any:
     return np.concatenate([part.ravel() for part in parts])
 
 
-@inline
+@allocating
 def unpack(
     numbers: Floats, whole: Ints, tables: Singles
 ) -> tuple[Arm, Bounds, Atlas, tuple[Floats, Floats], Ints, Floats]:
@@ -135,7 +135,7 @@ def solve_poses(
     tasks[0, 15:18] = 0.0 if rows is None else np.inf
     tasks[0, 18:24] = 1.0
     tasks[0, 24], tasks[0, 25] = 0.999 * near, 0.999 * aligned
-    work = workspace(n, rows, arm[0].shape[0])
+    work, looks = workspace(n, rows, arm[0].shape[0]), lookup_space(n, 1)
     guess, best = np.empty(n), np.empty(n)
     for i in range(targets.shape[0]):
         ended[i, 0] = 0
@@ -157,7 +157,9 @@ def solve_poses(
             ended[i, 1] = UNSOLVED
             continue
         settings = damping, progress, per_start
-        spent, solved_by = search(arm, tasks, rows, bounds, atlas, guess, starts, settings, evaluations, best, work)
+        spent, solved_by = search(
+            arm, tasks, rows, bounds, atlas, guess, starts, settings, evaluations, best, work, looks
+        )
         ended[i, 0] = spent
         ended[i, 1] = SOLVED if solved_by >= 0 else UNSOLVED
         for c in range(n):

@@ -11,7 +11,9 @@ from pin_metaik.kinematics.guesses import (
     ATLAS,
     TRIED,
     Atlas,
+    Looks,
     feature_distance,
+    lookup_space,
     merge_nearest,
     suggest,
     target_feature,
@@ -66,6 +68,7 @@ def search(
     evaluations: int,
     best: Floats,
     work: Work,
+    looks: Looks,
 ) -> tuple[int, int]:
     """Descend from one start after the other until one meets the tolerances or the evaluations are spent.
 
@@ -74,15 +77,12 @@ def search(
 
     Returns the evaluations spent and the number of the start that met them, or -1; ``best`` (n,) gets the coordinates.
     """
-    leaves = atlas[0]
-    T = tasks.shape[0]
-    tried = TRIED if leaves.shape[0] > 0 else 0
-    suggested = np.empty((tried, guess.shape[0]))
+    tried = TRIED if atlas[0].shape[0] > 0 else 0
+    suggested, goal, weights = looks[0], looks[1], looks[2]
     own = 0
     if tried > 0:
-        goal, weights = np.empty(9 * T, np.float32), np.empty(9 * T, np.float32)
         target_feature(tasks, atlas[3], goal, weights)
-        nearest = suggest(tasks, rows, bounds, atlas, goal, weights, suggested)
+        nearest = suggest(tasks, rows, bounds, atlas, work, looks)
         own = 0 if feature_distance(arm, guess, atlas[3], goal, weights, work) <= nearest else tried
     lower, upper, _ = bounds
     for c in range(best.shape[0]):
@@ -152,7 +152,7 @@ def descend(
     best: Floats,
 ) -> tuple[int, int]:
     """``search`` for one problem; the first of the starts (s, n) is the guess."""
-    work = workspace(lower.shape[0], rows, joints.shape[0])
+    n = lower.shape[0]
     return search(
         (joints, wiring, ends, tips),
         tasks,
@@ -164,7 +164,8 @@ def descend(
         (damping, progress, per_start),
         evaluations,
         best,
-        work,
+        workspace(n, rows, joints.shape[0]),
+        lookup_space(n, tasks.shape[0]),
     )
 
 
