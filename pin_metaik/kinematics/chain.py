@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import cached_property
 from threading import local
 from types import ModuleType
@@ -96,6 +97,7 @@ class Chain:
         self.kernels = _kernels()
         self._local = local()
         self._samples: dict[tuple[int, tuple[int, ...]], NDArray[np.float64]] = {}
+        self._spare: list[pin.Data] = []
         self._lanes: dict[bool, Lane] = {}
         self._reaches: dict[tuple[int, bool], Reach] = {}
 
@@ -107,6 +109,16 @@ class Chain:
         except AttributeError:
             self._local.data = self.model.createData()
             return self._local.data
+
+    @contextmanager
+    def lent_data(self) -> Iterator[pin.Data]:
+        """The same for a thread that does not live long: making one takes a millisecond for a big model."""
+        try:
+            data = self._spare.pop()
+        except IndexError:
+            data = self.model.createData()
+        yield data
+        self._spare.append(data)
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle by what the chain was made from."""
