@@ -116,6 +116,19 @@ def paths() -> Iterator[Row]:
     )
 
 
+def every_robot(count: int) -> Row:
+    """Random reachable poses and positions of every robot that can be loaded by name."""
+    names = mik.robot_names()
+    missed: list[str] = []
+    for name in track(names, "every robot", transient=True):
+        chain = chain_of(name.name)
+        poses = chain.poses(chain.box.sample(np.random.default_rng(12), count))[:, 0]
+        for asked in (poses, poses[:, :3, 3]):
+            missed += [name.name for result in mik.solve_ik_batch(chain, asked) if not result.verify()]
+    asked_for = f"{len(names)} robots x {count} poses and as many positions"
+    return f"every robot by name: {asked_for}", f"missed: {len(missed)}" + f" ({', '.join(missed)})" * bool(missed)
+
+
 def fingerprint(count: int) -> str:
     """Of the answers of all robots, alone and in batches with one worker and with two, which must be the same bits."""
     digest = hashlib.sha256()
@@ -181,6 +194,7 @@ def rows(options: argparse.Namespace) -> Iterator[Row]:
             yield all_solutions(robot, options.eaik, options.poses)
     yield nearest("ur5", options.poses)
     yield from paths()
+    yield every_robot(options.poses)
     yield repeatable(options.poses)
     yield two_hands(2 * options.poses)
     yield quadratic_programs(2 * options.poses)
