@@ -151,7 +151,7 @@ def _judge(
 ) -> NDArray[np.int64]:
     """Let Pinocchio judge one part of the batch; returns the numbers of what is left to solve."""
     chain, q = batch.chain, batch.q[part]
-    position, orientation = _errors(chain, q, poses)
+    position, orientation = _errors(chain, q, poses).T
     if tolerances[1] == math.inf:
         orientation[:] = 0.0
     batch.position_error[part], batch.orientation_error[part] = position, orientation
@@ -168,20 +168,14 @@ def _judge(
     return left
 
 
-def _errors(
-    chain: Chain, q: NDArray[np.float64], poses: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Distance and angle (k,) of the chain's frame from poses (k, 4, 4) at configurations q (k, nq), by Pinocchio."""
-    model, frame = chain.model, chain.frame_ids[0]
-    reached = np.empty((len(q), 4, 4))
+def _errors(chain: Chain, q: NDArray[np.float64], poses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Distance and angle (k, 2) of the chain's frame from poses (k, 4, 4) at configurations q (k, nq), by Pinocchio."""
+    reached, errors = np.empty((len(q), 4, 4)), np.empty((len(q), 2))
     with chain.lent_data() as data:
         for i, one in enumerate(q):
-            pin.forwardKinematics(model, data, one)
-            reached[i] = pin.updateFramePlacement(model, data, frame).homogeneous
-    R = poses[:, :3, :3].transpose(0, 2, 1) @ reached[:, :3, :3]
-    skew = 0.5 * np.stack([R[:, 2, 1] - R[:, 1, 2], R[:, 0, 2] - R[:, 2, 0], R[:, 1, 0] - R[:, 0, 1]], axis=1)
-    angle = np.arctan2(np.linalg.norm(skew, axis=1), 0.5 * (np.trace(R, axis1=1, axis2=2) - 1.0))
-    return np.linalg.norm(reached[:, :3, 3] - poses[:, :3, 3], axis=1), angle
+            reached[i] = chain.place(data, one).homogeneous
+    chain.kernels.distances(poses, reached, errors)
+    return errors
 
 
 def _as_array(targets: ArrayLike | Sequence[TargetLike]) -> NDArray[np.float64] | None:

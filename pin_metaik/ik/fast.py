@@ -104,9 +104,7 @@ def solve_fast(
 
 def errors(chain: Chain, goal: pin.SE3, q: NDArray[np.float64], tolerances: tuple[float, float]) -> tuple[float, float]:
     """Distance (m) and angle (rad; 0 where free) of the chain's frame from a goal at q (nq,), by Pinocchio."""
-    data = chain.data
-    pin.forwardKinematics(chain.model, data, q)
-    error = goal.actInv(pin.updateFramePlacement(chain.model, data, chain.frame_ids[0]))
+    error = goal.actInv(chain.place(chain.data, q))
     x, y, z, i, j, k, w = pin.SE3ToXYZQUATtuple(error)  # as exact as log3, at a quarter of the time
     angle = 2.0 * math.atan2(math.sqrt(i * i + j * j + k * k), abs(w))
     return math.sqrt(x * x + y * y + z * z), 0.0 if tolerances[1] == math.inf else angle

@@ -25,6 +25,7 @@ from pin_metaik.optimize import Box
 Lane: TypeAlias = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float32]]
 
 REMEMBERED = 16  # sets of samples kept
+MANY = 24  # joints from which on a frame's Jacobian takes less time than all placements, whichever limb it is on
 
 
 class Chain:
@@ -97,6 +98,7 @@ class Chain:
         self.kernels = _kernels()
         self._local = local()
         self._samples: dict[tuple[int, tuple[int, ...]], NDArray[np.float64]] = {}
+        self._many_limbs = model.njoints > MANY
         self._spare: list[pin.Data] = []
         self._lanes: dict[bool, Lane] = {}
         self._reaches: dict[tuple[int, bool], Reach] = {}
@@ -202,6 +204,18 @@ class Chain:
         if (tip, oriented) not in self._reaches:
             self._reaches[tip, oriented] = reach_of(self.paths, self.limits, tip, oriented)
         return self._reaches[tip, oriented]
+
+    def place(self, data: pin.Data, q: NDArray[np.float64]) -> pin.SE3:
+        """World placement of the first frame at configuration q (nq,), by Pinocchio; ``data`` holds it, so not to keep.
+
+        Of a model with many limbs only the frame's own is computed, which the frame's Jacobian does.
+        """
+        model, frame = self.model, self.frame_ids[0]
+        if self._many_limbs:
+            pin.computeFrameJacobian(model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)
+        else:
+            pin.forwardKinematics(model, data, q)
+        return pin.updateFramePlacement(model, data, frame)
 
     def placements(self, q: NDArray[np.float64]) -> list[pin.SE3]:
         """World placement of each frame at configuration q (nq,), by Pinocchio."""

@@ -168,3 +168,22 @@ def solve_poses(
                 q[i, e], q[i, e + 1] = math.cos(best[c]), math.sin(best[c])
             else:
                 q[i, e] = min(max(best[c], least[e]), most[e])
+
+
+@jit("void(f8[:,:,::1], f8[:,:,::1], f8[:,::1])")
+def distances(targets: Floats, reached: Floats, out: Floats) -> None:
+    """Distance (m) and angle (rad), out (k, 2), of poses reached (k, 4, 4) from their targets."""
+    for i in range(targets.shape[0]):
+        A, B = targets[i], reached[i]
+        square = cos = 0.0
+        for r in range(3):
+            square += (B[r, 3] - A[r, 3]) ** 2
+            for c in range(3):
+                cos += A[r, c] * B[r, c]
+        x = y = z = 0.0
+        for r in range(3):
+            x += A[r, 2] * B[r, 1] - A[r, 1] * B[r, 2]
+            y += A[r, 0] * B[r, 2] - A[r, 2] * B[r, 0]
+            z += A[r, 1] * B[r, 0] - A[r, 0] * B[r, 1]
+        out[i, 0] = math.sqrt(square)
+        out[i, 1] = math.atan2(math.sqrt(x * x + y * y + z * z), cos - 1.0)

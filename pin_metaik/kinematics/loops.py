@@ -2,7 +2,7 @@
 
 from pin_metaik.kinematics.guesses import gains_of
 from pin_metaik.kinematics.kernels import costs, poses
-from pin_metaik.kinematics.lane import POSITION, SOLVED, UNSOLVED, pack, solve_poses
+from pin_metaik.kinematics.lane import POSITION, SOLVED, UNSOLVED, distances, pack, solve_poses
 from pin_metaik.kinematics.searches import descend, descend_all, linearize, neighbours
 
 __all__ = [
@@ -12,6 +12,7 @@ __all__ = [
     "costs",
     "descend",
     "descend_all",
+    "distances",
     "gains_of",
     "linearize",
     "neighbours",
