@@ -1,9 +1,10 @@
 """Checks in two layers: coarse solids first; where they touch, the geometry as it is has the last word.
 
 Free of the coarse solids is free: they enclose. So the answers are those of the original geometry at the price, nearly
-always, of the coarse one. Two pairs are treated apart. Where the coarse solids of two bodies overlap in most
-configurations they decide nothing, and the first layer has the originals of that pair, too. And where an obstacle is so
-small that it could hide inside the surface of a link's mesh, the link counts as its convex hull.
+always, of the coarse one. Some pairs are treated apart. Where the coarse solids of two bodies mostly overlap while the
+originals do not, they decide nothing, and the first layer has the originals of that pair, too. A half-space meets a mesh
+where it meets its hull, which is sooner found out. And where an obstacle is so small that it could hide inside the
+surface of a link's mesh, the link counts as its convex hull.
 """
 
 from __future__ import annotations
@@ -19,13 +20,14 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from pin_metaik.collision.body import Body
-from pin_metaik.collision.contact import Contact, Distance
+from pin_metaik.collision.contact import Contact, Distance, Near
 from pin_metaik.collision.layer import Layer
 from pin_metaik.collision.touch import SEED, random_configurations
 
+FLAT = coal.Halfspace, coal.Plane
 ROUNDING = 1e-6  # m added to the margin of coarse solids: what coal's distances may be off by
 SAMPLES = 50
-MOSTLY = 0.5  # of the samples: coarse solids that overlap so often decide nothing
+MOSTLY = 0.5  # of the samples: coarse solids that overlap so much more often than the originals decide nothing
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,14 +64,17 @@ class Checker:
         coarse_shapes = [(body, body.solid.coarse, body.placement * body.solid.offset) for body in bodies]
         trial = Layer.of(model, coarse_shapes, pairs, margins)
         Q = random_configurations(model, np.random.default_rng(SEED), SAMPLES)
-        share = np.zeros(len(pairs))
-        for q in Q:
-            share[trial.colliding(q)] += 1.0 / SAMPLES
+        hits = np.zeros((SAMPLES, len(pairs)), dtype=bool)
+        for k, q in enumerate(Q):
+            hits[k, trial.colliding(q)] = True
+        share = hits.mean(axis=0)
+        last = Layer.of(model, fine_shapes, fine_pairs, margins)
+        vain = share - _shares(last, Q, np.flatnonzero(share >= MOSTLY))
         order = np.argsort(-share, kind="stable").tolist()
         first, n = [], len(bodies)
         for k in order:
             i, j = fine_pairs[k]
-            first.append((n + i, n + j) if share[k] >= MOSTLY else pairs[k])
+            first.append((n + i, n + j) if vain[k] >= MOSTLY else pairs[k])
         if any(i >= n for i, _ in first):
             coarse_shapes += fine_shapes
         return Checker(
@@ -119,6 +124,25 @@ class Checker:
             best = min(best, at, key=lambda one: one.distance)
         return best
 
+    def depth(self, q: NDArray[np.float64]) -> float:
+        """How far (m) the margin is undercut at q (nq,) by the coarse solids: what a search descends on."""
+        return max(0.0, self.margin - self.coarse.least(q))
+
+    def near(self, q: NDArray[np.float64], within: float, most: int) -> list[Near]:
+        """The pairs of coarse solids less than ``within`` m apart at q (nq,), the nearest first, ``most`` of them."""
+        distances = self.coarse.distances(q)
+        found = []
+        for k in np.argsort(distances, kind="stable")[:most].tolist():
+            if distances[k] > within:
+                break
+            result = self.coarse.result(k)
+            normal = np.array(result.normal)
+            if 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none
+                joints = (self.bodies[self.pairs[k][0]].joint, self.bodies[self.pairs[k][1]].joint)
+                points = np.array(result.getNearestPoint1()), np.array(result.getNearestPoint2())
+                found.append(Near(float(distances[k]), normal, points, joints))
+        return found
+
     def _confirmed(self, q: NDArray[np.float64], first: bool = False) -> list[int]:
         """Numbers of the pairs that collide in both layers at q (nq,); with ``first`` at most one."""
         suspects = self.coarse.colliding(q)
@@ -165,6 +189,18 @@ def _fixed(bodies: tuple[Body, ...], pairs: list[tuple[int, int]]) -> tuple[Cont
     return tuple(contacts.values())
 
 
+def _shares(layer: Layer, Q: NDArray[np.float64], pairs: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Of the configurations Q (k, nq) in which each of some pairs collides; 1 for the other pairs."""
+    share = np.ones(len(layer.margins))
+    if len(pairs):
+        hits = np.zeros((len(Q), len(pairs)), dtype=bool)
+        for k, q in enumerate(Q):
+            layer.place(q)
+            hits[k] = [layer.touches(int(pair)) for pair in pairs]
+        share[pairs] = hits.mean(axis=0)
+    return share
+
+
 def _overlap(a: Body, b: Body) -> bool:
     request, result = coal.CollisionRequest(), coal.CollisionResult()
     poses = [coal.Transform3s(body.placement.rotation, body.placement.translation) for body in (a, b)]
@@ -176,7 +212,7 @@ def _fine(
 ) -> tuple[list[tuple[Body, Any, pin.SE3]], list[tuple[int, int]]]:
     """The shapes of the second layer, originals then hulls, and which of them each pair checks."""
     n = len(bodies)
-    shapes = [(body, shape, body.placement) for body in bodies for shape in (body.solid.original,)]
+    shapes = [(body, body.solid.original, body.placement) for body in bodies]
     shapes += [(body, body.solid.hull, body.placement) for body in bodies]
 
     def chosen(i: int, j: int) -> int:
@@ -186,13 +222,16 @@ def _fine(
 
 
 def _facing(a: Body, b: Body) -> Any:
-    """The shape of a that b is checked against: its hull where b, no part of the robot, could hide in its mesh."""
-    surface = isinstance(a.solid.original, coal.BVHModelBase)
-    return a.solid.hull if surface and a.part and not b.part and _size(b) < _size(a) else a.solid.original
+    """The shape of a that b is checked against: its hull where that is the same, or b could hide in its mesh."""
+    flat = isinstance(b.solid.original, FLAT)
+    hides = a.part and not b.part and isinstance(a.solid.original, coal.BVHModelBase) and _size(b) < _size(a)
+    return a.solid.hull if flat or hides else a.solid.original
 
 
 def _size(body: Body) -> float:
-    """Diagonal of the box around a body, m."""
+    """Diagonal of the box around a body, m; infinite for planes."""
     hull = body.solid.hull
+    if isinstance(hull, FLAT):
+        return math.inf
     hull.computeLocalAABB()
-    return float(np.linalg.norm(hull.aabb_local.max_ - hull.aabb_local.min_))
+    return math.dist(hull.aabb_local.max_, hull.aabb_local.min_)

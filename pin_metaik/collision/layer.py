@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from threading import local
@@ -85,6 +86,14 @@ class Layer:
         data, shapes = self.scratch
         pin.computeDistances(self.model, data, self.geometry, shapes, q)
         return np.array([result.min_distance for result in shapes.distanceResults])
+
+    def least(self, q: NDArray[np.float64]) -> float:
+        """The least distance of any pair at q (nq,), m; infinite without pairs."""
+        data, shapes = self.scratch
+        if not len(self.margins):
+            return math.inf
+        nearest = pin.computeDistances(self.model, data, self.geometry, shapes, q)
+        return float(shapes.distanceResults[nearest].min_distance)
 
     def result(self, pair: int) -> Any:
         """What coal found when the distance of a pair was last asked for."""

@@ -1,0 +1,153 @@
+"""From a solution in collision to one that is free: other solutions first, then pushed ones, then metaheuristic seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import count, islice
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.collision import CollisionWorld
+from pin_metaik.ik.ledger import Ledger
+from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.push import Push
+from pin_metaik.ik.solutions import VAIN, VAIN_EACH, gather
+from pin_metaik.ik.starts import BATCH, DEFAULT_SEED, Rng, drawn
+from pin_metaik.kinematics import Limits
+from pin_metaik.optimize import Metaheuristic, minimize
+
+NEAREST = 8  # entries of the atlas to start from
+CANDIDATES = 256  # solutions kept, to be told apart
+APART = 0.05  # rad or m between solutions; what is nearer collides alike
+OTHERS = 0.25  # of the budget, for other solutions of a redundant chain before any is pushed
+PUSHED = 4  # of the solutions found, those pushed in each round: the least deep
+SEEDING = 0.05  # of what is left, for a metaheuristic in each round
+DEPTH_WEIGHT = 5.0  # what a metre of depth counts in it, in metres from the target
+ELITE = 8  # its best points that are refined
+
+
+class ClearSearch:
+    """One search for a solution of a problem that is free of collisions in the problem's world.
+
+    Attributes:
+        ledger: What was spent of which budget.
+        found: (CANDIDATES, n) solutions in collision; ``known`` rows of them are taken.
+        complete: Whether there are no other solutions, as far as can be told.
+    """
+
+    def __init__(
+        self, problem: IKProblem, world: CollisionWorld, base: NDArray[np.float64], ledger: Ledger, rng: Rng
+    ) -> None:
+        """Set up for a problem; ``base`` (nq,) holds the joints that the chain does not move."""
+        self.problem, self.world, self.base, self.ledger, self.rng = problem, world, base, ledger, rng
+        self.found = np.empty((CANDIDATES, problem.chain.n))
+        self.known = self.pushed = self.vain = 0
+        self.complete = False
+        self._redundant = problem.chain.n > len(problem.rows)
+        self._generator = np.random.default_rng(DEFAULT_SEED if rng is None else rng)
+
+    def run(self, x: NDArray[np.float64], seeder: Metaheuristic) -> NDArray[np.float64] | None:
+        """Coordinates (n,) that are a solution, from x (n,), which is one but for collisions; None: none was found."""
+        starts = self._starts(x)
+        share = OTHERS if self._redundant else 1.0
+        free: NDArray[np.float64] | None = None
+        while free is None and not (self.ledger.over(share) or self.complete or self.known == CANDIDATES):
+            free = self._others(next(starts)[None])
+        while free is None and not (self.ledger.over() or self.complete):
+            free = self._push(PUSHED)
+            if free is None:
+                free = self._seed(seeder)
+            if free is None:
+                free = self._others(np.array(list(islice(starts, BATCH))))
+        return free
+
+    def least_deep(self) -> NDArray[np.float64]:
+        """Coordinates (n,) of the solution found that is least deep in collision."""
+        return self.found[self._by_depth(0)[0]]
+
+    def _starts(self, x: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
+        """Starts (n,): x, the atlas' nearest entries, then random ones, for ever.
+
+        Where there are only so many solutions, each new one comes before them with one joint turned half round, which
+        is where others often are.
+        """
+        chain, turned = self.problem.chain, 0
+        yield x
+        for index in count():
+            for start in self.problem.near(NEAREST) if index == 0 else drawn(chain, self.rng, index, BATCH):
+                while turned < self.known and not self._redundant:
+                    yield from half_turns(self.problem.limits, self.found[turned])
+                    turned += 1
+                yield start
+
+    def _others(self, starts: NDArray[np.float64]) -> NDArray[np.float64] | None:
+        """Descend from starts (s, n), one by one; the first new solution that is free."""
+        for start in starts:
+            if self.known == CANDIDATES:  # forget all but the least deep
+                keep = self._by_depth(0)[:PUSHED]
+                self.found[: len(keep)] = self.found[keep]
+                self.known, self.pushed = len(keep), 0
+            room = self.found[: self.known + 1]
+            spent, known, row = gather(
+                self.problem, start[None], room, self.known, APART, 2, self.ledger.left(), branch=False
+            )
+            self.ledger.spent += spent
+            new = known > self.known
+            self.known, self.vain = known, 0 if new else self.vain + row
+            self.complete = not self._redundant and self.vain >= VAIN + VAIN_EACH * known
+            if new and self._accepts(room[-1]):
+                return room[-1]
+            if self.complete or self.ledger.over():
+                break
+        return None
+
+    def _push(self, most: int) -> NDArray[np.float64] | None:
+        """Push the least deep of the solutions that have not been pushed yet out of collision."""
+        order = self._by_depth(self.pushed)[:most]
+        chosen = self.found[order].copy()
+        rest = np.delete(np.arange(self.known), np.concatenate([np.arange(self.pushed), order]))
+        self.found[: self.known] = np.concatenate([self.found[: self.pushed], chosen, self.found[rest]])
+        self.pushed += len(order)
+        for x in chosen:
+            refined = Push().refine(self.problem, self.world, x, self.base, self.ledger.left())
+            self.ledger.spent += refined.evaluations
+            if refined.met:
+                return refined.x
+        return None
+
+    def _seed(self, seeder: Metaheuristic) -> NDArray[np.float64] | None:
+        """Search for a point that is near the target and not deep, and refine the best of them."""
+        problem, checker, chain = self.problem, self.world.checker, self.problem.chain
+
+        def costs(X: NDArray[np.float64]) -> NDArray[np.float64]:
+            depths = np.array([checker.depth(q) for q in chain.q(X, self.base)])
+            return problem.costs(X) + DEPTH_WEIGHT * depths
+
+        found = minimize(
+            costs, problem.box, seeder, self.ledger.slice(SEEDING), self._generator, seeds=self.found[: self.known], keep=ELITE
+        )
+        self.ledger.add_search(found)
+        free = self._others(found.elite)
+        for x in found.elite[:2] if free is None else ():
+            refined = Push().refine(self.problem, self.world, x, self.base, self.ledger.left())
+            self.ledger.spent += refined.evaluations
+            if refined.met:
+                return refined.x
+        return free
+
+    def _accepts(self, x: NDArray[np.float64]) -> bool:
+        return self.problem.accepts(self.problem.chain.q(x, self.base))
+
+    def _by_depth(self, first: int) -> NDArray[np.int64]:
+        """Numbers of the solutions from ``first`` on, the least deep first."""
+        Q = self.problem.chain.q(self.found[first : self.known], self.base)
+        order = np.argsort([self.world.checker.depth(q) for q in Q], kind="stable")
+        return first + order.astype(np.int64)
+
+
+def half_turns(limits: Limits, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Starts (n, n) from a solution x (n,): one joint each turned half round, the way its limits have room for."""
+    starts = np.repeat(x[None], len(x), axis=0)
+    starts[np.diag_indices(len(x))] += np.where(x + np.pi > limits.upper, -np.pi, np.pi)
+    return limits.clip(starts)
