@@ -17,7 +17,7 @@ Arrays = dict[str, NDArray[np.float64]]
 
 
 def cache_folder() -> Path:
-    """Where things are kept: ``$PIN_METAIK_CACHE``, else ``pin_metaik`` in ``$XDG_CACHE_HOME``, else in ``~/.cache``."""
+    """Where it is kept: ``$PIN_METAIK_CACHE``, else ``pin_metaik`` in ``$XDG_CACHE_HOME`` or ``~/.cache``."""
     if folder := os.environ.get("PIN_METAIK_CACHE"):
         return Path(folder)
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "pin_metaik"
@@ -38,7 +38,7 @@ def kept(kind: str, content: bytes, make: Callable[[], Arrays]) -> Arrays:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".tmp", delete=False) as file:
-            np.savez(file, **arrays)
+            np.savez(file, allow_pickle=False, **arrays)
         Path(file.name).replace(path)  # at once, so that two processes never see half a file
     except OSError:
         pass

@@ -2,8 +2,8 @@
 
 Free of the coarse solids is free: they enclose. So the answers are those of the original geometry at the price, nearly
 always, of the coarse one. Some pairs are treated apart. Where the coarse solids of two bodies mostly overlap while the
-originals do not, they decide nothing, and the first layer has the originals of that pair, too. A half-space meets a mesh
-where it meets its hull, which is sooner found out. And where an obstacle is so small that it could hide inside the
+originals do not, they decide nothing, and the first layer has the originals of that pair, too. A half-space meets a
+mesh where it meets its hull, which is sooner found out. And where an obstacle is so small that it could hide inside the
 surface of a link's mesh, the link counts as its convex hull.
 """
 
@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import coal
@@ -26,6 +26,7 @@ from pin_metaik.collision.touch import SEED, random_configurations
 
 FLAT = coal.Halfspace, coal.Plane
 ROUNDING = 1e-6  # m added to the margin of coarse solids: what coal's distances may be off by
+NEAR = 0.05  # m beyond the margin: pairs farther apart do not concern a step
 SAMPLES = 50
 MOSTLY = 0.5  # of the samples: coarse solids that overlap so much more often than the originals decide nothing
 
@@ -40,6 +41,7 @@ class Checker:
         margin: Distance at or below which a pair collides, m.
         coarse: The first layer ...
         fine: ... and the second, with the same pairs.
+        wide: The first again, with ``NEAR`` more margin.
         fixed: Contacts of what cannot move: then every configuration collides.
         exact: Whether the second layer is asked.
     """
@@ -49,6 +51,7 @@ class Checker:
     margin: float
     coarse: Layer
     fine: Layer
+    wide: Layer
     fixed: tuple[Contact, ...]
     exact: bool
 
@@ -77,12 +80,14 @@ class Checker:
             first.append((n + i, n + j) if vain[k] >= MOSTLY else pairs[k])
         if any(i >= n for i, _ in first):
             coarse_shapes += fine_shapes
+        coarse = Layer.of(model, coarse_shapes, first, margins + ROUNDING)
         return Checker(
             bodies,
             tuple(pairs[k] for k in order),
             margin,
-            Layer.of(model, coarse_shapes, first, margins + ROUNDING),
+            coarse,
             Layer.of(model, fine_shapes, [fine_pairs[k] for k in order], margins),
+            replace(coarse, margins=margins + NEAR),
             _fixed(bodies, every),
             exact,
         )
@@ -97,15 +102,21 @@ class Checker:
 
     def contacts(self, q: NDArray[np.float64]) -> tuple[Contact, ...]:
         """What collides at q (nq,), the deepest first; two bodies count once."""
-        pairs = self._confirmed(q) if self.exact else self.coarse.colliding(q)
         deepest: dict[tuple[str, str], Contact] = {(c.first, c.second): c for c in self.fixed}
-        for k in pairs:
-            at = self._hulls(q, k)
-            contact = Contact(at.first, at.second, max(0.0, self.margin - at.distance))
+        for contact, _ in self.contacts_of(q):
             names = contact.first, contact.second
             if names not in deepest or deepest[names].depth < contact.depth:
                 deepest[names] = contact
         return tuple(sorted(deepest.values(), key=lambda contact: (-contact.depth, contact)))
+
+    def contacts_of(self, q: NDArray[np.float64]) -> list[tuple[Contact, tuple[int, int]]]:
+        """Every pair that collides at q (nq,), with the ids of the joints that carry the two."""
+        found = []
+        for k in self._confirmed(q) if self.exact else self.coarse.colliding(q):
+            at = self._hulls(q, k)
+            a, b = (self.bodies[i].joint for i in self.pairs[k])
+            found.append((Contact(at.first, at.second, max(0.0, self.margin - at.distance)), (a, b)))
+        return found
 
     def nearest(self, q: NDArray[np.float64]) -> Distance:
         """The two bodies nearest to each other at q (nq,), of all that move against each other."""
@@ -125,22 +136,19 @@ class Checker:
         return best
 
     def depth(self, q: NDArray[np.float64]) -> float:
-        """How far (m) the margin is undercut at q (nq,) by the coarse solids: what a search descends on."""
-        return max(0.0, self.margin - self.coarse.least(q))
+        """By how much (m, summed over the pairs) coarse solids undercut the margin at q: what a search descends on."""
+        return sum(max(0.0, self.margin - self.coarse.distance(k)) for k in self.coarse.colliding(q))
 
-    def near(self, q: NDArray[np.float64], within: float, most: int) -> list[Near]:
-        """The pairs of coarse solids less than ``within`` m apart at q (nq,), the nearest first, ``most`` of them."""
-        distances = self.coarse.distances(q)
+    def near(self, q: NDArray[np.float64]) -> list[Near]:
+        """The pairs of coarse solids less than ``NEAR`` beyond the margin apart at q (nq,)."""
         found = []
-        for k in np.argsort(distances, kind="stable")[:most].tolist():
-            if distances[k] > within:
-                break
-            result = self.coarse.result(k)
+        for k in self.wide.colliding(q):
+            distance, result = self.wide.distance(k), self.wide.result(k)
             normal = np.array(result.normal)
             if 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none
                 joints = (self.bodies[self.pairs[k][0]].joint, self.bodies[self.pairs[k][1]].joint)
                 points = np.array(result.getNearestPoint1()), np.array(result.getNearestPoint2())
-                found.append(Near(float(distances[k]), normal, points, joints))
+                found.append(Near(distance, normal, points, joints))
         return found
 
     def _confirmed(self, q: NDArray[np.float64], first: bool = False) -> list[int]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from threading import local
@@ -28,7 +27,7 @@ class Layer:
     model: pin.Model
     geometry: pin.GeometryModel
     margins: NDArray[np.float64]
-    _local: local = field(default_factory=local, repr=False)
+    _local: local = field(init=False, default_factory=local, repr=False)
 
     @staticmethod
     def of(
@@ -49,13 +48,14 @@ class Layer:
     def scratch(self) -> tuple[pin.Data, pin.GeometryData]:
         """Pinocchio's data, one a thread, with the margins set."""
         try:
-            return self._local.scratch
+            scratch: tuple[pin.Data, pin.GeometryData] = self._local.scratch
+            return scratch
         except AttributeError:
             data = self.geometry.createData()
             for request, margin in zip(data.collisionRequests, self.margins.tolist(), strict=True):
                 request.security_margin = margin
-            self._local.scratch = self.model.createData(), data
-            return self._local.scratch
+            scratch = self._local.scratch = self.model.createData(), data
+            return scratch
 
     def place(self, q: NDArray[np.float64]) -> None:
         """Put every shape where it is at q (nq,): what ``touches``, ``distance`` and ``contact`` look at."""
@@ -86,14 +86,6 @@ class Layer:
         data, shapes = self.scratch
         pin.computeDistances(self.model, data, self.geometry, shapes, q)
         return np.array([result.min_distance for result in shapes.distanceResults])
-
-    def least(self, q: NDArray[np.float64]) -> float:
-        """The least distance of any pair at q (nq,), m; infinite without pairs."""
-        data, shapes = self.scratch
-        if not len(self.margins):
-            return math.inf
-        nearest = pin.computeDistances(self.model, data, self.geometry, shapes, q)
-        return float(shapes.distanceResults[nearest].min_distance)
 
     def result(self, pair: int) -> Any:
         """What coal found when the distance of a pair was last asked for."""

@@ -86,7 +86,9 @@ class Mesh:
     @property
     def convex(self) -> bool:
         """Whether the solid is its own convex hull, to a hundredth of its volume."""
-        return self.triangles is None or _volume(self.vertices, self.triangles) > 0.99 * float(self.hull.computeVolume())
+        return self.triangles is None or _volume(self.vertices, self.triangles) > 0.99 * float(
+            self.hull.computeVolume()
+        )
 
     def geometry(self) -> Any:
         """The shape as coal has it: a hull where the solid is convex, else its surface."""

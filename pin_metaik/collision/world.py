@@ -140,7 +140,12 @@ class CollisionWorld:
         self._checker = None
 
     def attach(
-        self, name: str, shape: Shape, frame: str, pose: pin.SE3 | ArrayLike = (0.0, 0.0, 0.0), touching: Iterable[str] | None = None
+        self,
+        name: str,
+        shape: Shape,
+        frame: str,
+        pose: pin.SE3 | ArrayLike = (0.0, 0.0, 0.0),
+        touching: Iterable[str] | None = None,
     ) -> None:
         """Grasp an object: from now on it moves with a frame, and must not collide either.
 

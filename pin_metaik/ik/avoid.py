@@ -17,44 +17,37 @@ from pin_metaik.ik.solver import FALLBACK, IKSolver
 from pin_metaik.ik.starts import Rng
 from pin_metaik.optimize import make
 
+LEVER = 2.0  # m; how far from its frame what a frame holds may reach, generously
+HELD = 0.01  # m; looser targets do not hold their frame
 
-def keep_clear(
-    first: IKResult, q0: ArrayLike | None, solver: IKSolver, world: CollisionWorld, rng: Rng
-) -> IKResult:
+
+def keep_clear(first: IKResult, q0: ArrayLike | None, solver: IKSolver, world: CollisionWorld, rng: Rng) -> IKResult:
     """The result itself where it is free of collisions in the world, else one that is, else the least deep one.
 
-    What is not solved without the world is not solved in it. Where the robot's base or what else cannot move
-    collides, no configuration is free and none is looked for.
+    What is not solved without the world is not solved in it. Where what collides cannot move, or is held where it is by
+    the target, no configuration is free and none is looked for.
     """
     began = perf_counter()
     problem = IKProblem.of(first.chain, first.target, world)
-    checker = world.checker
-    if not first.success or not checker.collides(first.q):
+    met = first.status in (IKStatus.SOLVED, IKStatus.IN_COLLISION)
+    if not met or not world.checker.collides(first.q):
         return replace(first, world=world, seconds=first.seconds + perf_counter() - began)
-    if checker.fixed:
-        return _ended(first, first.q, first.evaluations, IKStatus.IN_COLLISION, problem, world, began)
     chain = first.chain
     base = chain.reference if q0 is None else chain.configuration(q0)
     ledger = Ledger(problem, solver.budget, began - first.seconds, first.x)
     ledger.spent = first.evaluations
     search = ClearSearch(problem, world, base, ledger, rng)
-    seeder = FALLBACK if solver.seeder in (None, "auto") else solver.seeder
     free: NDArray[np.float64] | None = None
-    try:
-        free = search.run(first.x, make(seeder))
-    except KeyboardInterrupt:
-        ledger.interrupted = True
+    if not _hopeless(problem, world, first.q):
+        try:
+            free = search.run(first.x, make(FALLBACK if solver.seeder in (None, "auto") else solver.seeder))
+        except KeyboardInterrupt:
+            ledger.interrupted = True
     if free is not None:
-        x = chain.limits.nearest_turns(free, chain.x(base))
-        return _ended(first, chain.q(x, base), ledger.spent, IKStatus.SOLVED, problem, world, began)
-    status = ledger.status if ledger.interrupted else IKStatus.IN_COLLISION
-    q = chain.q(search.least_deep(), base) if search.known else first.q
-    return _ended(first, q, ledger.spent, status, problem, world, began)
-
-
-def _ended(
-    first: IKResult, q: NDArray[np.float64], spent: int, status: IKStatus, problem: IKProblem, world: CollisionWorld, began: float
-) -> IKResult:
+        q, status = chain.q(chain.limits.nearest_turns(free, chain.x(base)), base), IKStatus.SOLVED
+    else:
+        q = chain.q(search.least_deep(), base) if search.known else first.q
+        status = IKStatus.STOPPED if ledger.interrupted or ledger.late else IKStatus.IN_COLLISION
     verdict = problem.verdict(q)
     return replace(
         first,
@@ -62,8 +55,26 @@ def _ended(
         status=status,
         position_error=verdict.position_error,
         orientation_error=verdict.orientation_error,
-        evaluations=spent,
+        evaluations=ledger.spent,
         seconds=first.seconds + perf_counter() - began,
         world=world,
-        contacts=() if status is IKStatus.SOLVED else world.checker.contacts(q),
+        contacts=world.checker.contacts(q) if verdict.collides else (),
+    )
+
+
+def _hopeless(problem: IKProblem, world: CollisionWorld, q: NDArray[np.float64]) -> bool:
+    """Whether every solution collides as this one, q (nq,), does: two bodies that stand, or that the target holds.
+
+    A frame with a whole pose for a target holds every body that is fixed to it, to within the tolerances.
+    """
+    checker, chain = world.checker, problem.chain
+    if checker.fixed:
+        return True
+    held = {0: 0.0}
+    for frame, target in zip(chain.frame_ids, problem.targets, strict=True):
+        slack = sum(target.allowance) * LEVER
+        if all(target.counts) and slack < HELD:
+            held[int(chain.model.frames[frame].parentJoint)] = slack
+    return any(
+        contact.depth > held[a] + held[b] for contact, (a, b) in checker.contacts_of(q) if a in held and b in held
     )

@@ -1,4 +1,4 @@
-"""From a solution in collision to one that is free: other solutions first, then pushed ones, then metaheuristic seeds."""
+"""From a solution in collision to one that is free: other ones first, then pushed ones, then metaheuristic seeds."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ CANDIDATES = 256  # solutions kept, to be told apart
 APART = 0.05  # rad or m between solutions; what is nearer collides alike
 OTHERS = 0.25  # of the budget, for other solutions of a redundant chain before any is pushed
 PUSHED = 4  # of the solutions found, those pushed in each round: the least deep
-SEEDING = 0.05  # of what is left, for a metaheuristic in each round
+SEEDING = 0.02  # of what is left, for a metaheuristic in each round
+ROUND = 256  # further starts in each round
 DEPTH_WEIGHT = 5.0  # what a metre of depth counts in it, in metres from the target
 ELITE = 8  # its best points that are refined
 
@@ -59,12 +60,13 @@ class ClearSearch:
             if free is None:
                 free = self._seed(seeder)
             if free is None:
-                free = self._others(np.array(list(islice(starts, BATCH))))
+                free = self._others(np.array(list(islice(starts, ROUND))))
         return free
 
     def least_deep(self) -> NDArray[np.float64]:
         """Coordinates (n,) of the solution found that is least deep in collision."""
-        return self.found[self._by_depth(0)[0]]
+        least: NDArray[np.float64] = self.found[self._by_depth(0)[0]]
+        return least
 
     def _starts(self, x: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
         """Starts (n,): x, the atlas' nearest entries, then random ones, for ever.
@@ -96,8 +98,9 @@ class ClearSearch:
             new = known > self.known
             self.known, self.vain = known, 0 if new else self.vain + row
             self.complete = not self._redundant and self.vain >= VAIN + VAIN_EACH * known
-            if new and self._accepts(room[-1]):
-                return room[-1]
+            newest: NDArray[np.float64] = room[-1]
+            if new and self._accepts(newest):
+                return newest
             if self.complete or self.ledger.over():
                 break
         return None
@@ -125,7 +128,13 @@ class ClearSearch:
             return problem.costs(X) + DEPTH_WEIGHT * depths
 
         found = minimize(
-            costs, problem.box, seeder, self.ledger.slice(SEEDING), self._generator, seeds=self.found[: self.known], keep=ELITE
+            costs,
+            problem.box,
+            seeder,
+            self.ledger.slice(SEEDING),
+            self._generator,
+            seeds=self.found[: self.known],
+            keep=ELITE,
         )
         self.ledger.add_search(found)
         free = self._others(found.elite)

@@ -54,9 +54,7 @@ class IKProblem:
     world: CollisionWorld | None = None
 
     @staticmethod
-    def of(
-        chain: Chain, target: TargetLike | Sequence[TargetLike], world: CollisionWorld | None = None
-    ) -> IKProblem:
+    def of(chain: Chain, target: TargetLike | Sequence[TargetLike], world: CollisionWorld | None = None) -> IKProblem:
         """Match what somebody asks for to the chain's frames.
 
         Args:

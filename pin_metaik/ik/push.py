@@ -14,6 +14,7 @@ from pin_metaik.ik.refine.protocol import Refinement
 from pin_metaik.ik.refine.qp_solvers import quickest, row_qp
 
 ROWS = 12  # the nearest pairs; others cannot come into contact in one step
+NO_TURN, NO_TORQUE = np.eye(3), np.zeros(3)
 TOLERANCE = 1e-6  # of iterative QP solvers
 
 
@@ -22,14 +23,13 @@ class Push:
     """Steps that minimise |J dx + r|^2 + damping |dx|^2 + stiffness s^2, the distances of near pairs being kept.
 
     For each pair of bodies at distance d along the normal n, from the one to the other, the row is that of a velocity
-    damper (Faverjon and Tournassoud 1987): n' (J_2 - J_1) dx + s >= gain (safe - d). So far pairs may approach, near ones
-    only slowly, and overlapping ones must part; s >= 0 is what cannot be kept in one step, and dear, so that the target
-    is left for a while rather than an overlap kept. Distances are those of the simplified solids.
+    damper (Faverjon and Tournassoud 1987): n' (J_2 - J_1) dx + s >= gain (safe - d). So far pairs may approach, near
+    ones only slowly, and overlapping ones must part; s >= 0 is what cannot be kept in one step, and dear, so that the
+    target is left for a while rather than an overlap kept. Distances are those of the simplified solids.
 
     Attributes:
         iterations: Steps at most.
         largest: The most that any coordinate moves in one step, rad or m.
-        influence: Pairs farther apart than this beyond the margin have no row, m.
         room: What distance is aimed at beyond the margin, m.
         gain: Which part of the missing distance one step makes up.
         stiffness: What a squared metre of missing distance counts.
@@ -38,14 +38,18 @@ class Push:
 
     iterations: int = 30
     largest: float = 0.2
-    influence: float = 0.05
     room: float = 1e-3
     gain: float = 0.7
     stiffness: float = 1e3
     damping: float = 1e-4
 
     def refine(
-        self, problem: IKProblem, world: CollisionWorld, start: NDArray[np.float64], base: NDArray[np.float64], evaluations: int
+        self,
+        problem: IKProblem,
+        world: CollisionWorld,
+        start: NDArray[np.float64],
+        base: NDArray[np.float64],
+        evaluations: int,
     ) -> Refinement:
         """Step from coordinates ``start`` (n,) until the target is met free of collisions; base (nq,) holds the rest.
 
@@ -79,7 +83,7 @@ class Push:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Rows (ROWS, n + 1) and least values (ROWS,) for the pairs that are near at q (nq,); the rest are empty."""
         rows, least = np.zeros((ROWS, problem.chain.n + 1)), np.full(ROWS, -np.inf)
-        near = world.checker.near(q, world.margin + self.influence, ROWS)
+        near = sorted(world.checker.near(q), key=lambda pair: pair.distance)[:ROWS]
         model, data = problem.chain.model, problem.chain.data
         columns = [int(model.joints[int(j)].idx_v) for j in problem.chain.coordinates.joints]
         if near:
@@ -88,8 +92,8 @@ class Push:
             for joint, point, sign in zip(pair.joints, pair.points, (-1.0, 1.0), strict=True):
                 if joint:
                     J = pin.getJointJacobian(model, data, joint, pin.LOCAL_WORLD_ALIGNED)[:, columns]
-                    lever = point - data.oMi[joint].translation
-                    rows[k, :-1] += sign * (pair.normal @ J[:3] + np.cross(lever, pair.normal) @ J[3:])
+                    at_point = pin.SE3(NO_TURN, point - data.oMi[joint].translation)
+                    rows[k, :-1] += sign * (at_point.act(pin.Force(pair.normal, NO_TORQUE)).vector @ J)
             rows[k, -1] = 1.0
             least[k] = self.gain * (world.margin + self.room - pair.distance)
         return rows, least

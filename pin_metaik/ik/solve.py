@@ -51,9 +51,9 @@ def solve_ik(
     solver = solver or DEFAULT_SOLVER
     if world is None:
         return solve_one(chain, target, q0, solver, rng)
-    if solver.select != "first":
-        return solver.solve(IKProblem.of(chain, target, world), q0, rng)
-    return keep_clear(solve_one(chain, target, q0, solver, rng), q0, solver, world, rng)
+    if solver.select == "first":
+        return keep_clear(solve_one(chain, target, q0, solver, rng), q0, solver, world, rng)
+    return keep_clear(solver.solve(IKProblem.of(chain, target, world), q0, rng), q0, solver, world, rng)
 
 
 def solve_one(
