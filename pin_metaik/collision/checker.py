@@ -10,7 +10,7 @@ surface of a link's mesh, the link counts as its convex hull.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -109,13 +109,19 @@ class Checker:
                 deepest[names] = contact
         return tuple(sorted(deepest.values(), key=lambda contact: (-contact.depth, contact)))
 
-    def contacts_of(self, q: NDArray[np.float64]) -> list[tuple[Contact, tuple[int, int]]]:
-        """Every pair that collides at q (nq,), with the ids of the joints that carry the two."""
+    def contacts_of(
+        self, q: NDArray[np.float64], joints: Container[int] | None = None
+    ) -> list[tuple[Contact, tuple[int, int]]]:
+        """Every pair that collides at q (nq,), with the ids of the joints that carry the two.
+
+        With ``joints`` only pairs that such joints carry, both of them.
+        """
         found = []
         for k in self._confirmed(q) if self.exact else self.coarse.colliding(q):
-            at = self._hulls(q, k)
             a, b = (self.bodies[i].joint for i in self.pairs[k])
-            found.append((Contact(at.first, at.second, max(0.0, self.margin - at.distance)), (a, b)))
+            if joints is None or (a in joints and b in joints):
+                at = self._hulls(q, k)
+                found.append((Contact(at.first, at.second, max(0.0, self.margin - at.distance)), (a, b)))
         return found
 
     def nearest(self, q: NDArray[np.float64]) -> Distance:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.errors import InvalidGeometry
 
+FLAT = 1e-9  # thickness of a set of points, in its lengths, below which it has none
 HUGE = 20.0  # m; a mesh larger than this was probably drawn in millimetres
 
 
@@ -109,12 +110,17 @@ def convex_hull(points: NDArray[np.float64], name: str = "mesh") -> Any:
     Raises:
         InvalidGeometry: If they all lie in one plane.
     """
+    if flat(points):  # coal's hull takes the process down with it
+        raise InvalidGeometry(f"{name} has no volume: its {len(points)} points lie in one plane")
     column = coal.StdVec_Vec3s()
     column.extend(list(points))
-    try:
-        return coal.Convex.convexHull(column, True, "Qt")
-    except (ValueError, RuntimeError):
-        raise InvalidGeometry(f"{name} has no volume: its {len(points)} points lie in one plane") from None
+    return coal.Convex.convexHull(column, True, "Qt")
+
+
+def flat(points: NDArray[np.float64]) -> bool:
+    """Whether points (k, 3) lie in one plane."""
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    return len(points) < 4 or bool(spread[2] <= FLAT * spread[0])
 
 
 def _vertices(vertices: ArrayLike, name: str) -> NDArray[np.float64]:

@@ -16,11 +16,12 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from pin_metaik.collision.cache import Arrays, kept
-from pin_metaik.collision.mesh import convex_hull
+from pin_metaik.collision.mesh import convex_hull, flat
 
 Simplify: TypeAlias = Literal["none", "convex", "capsule"]
 
 ROUNDING = 1e-9  # m that a capsule is larger than it need be
+THICK = 1e-5  # m that a sheet is thickened by, each way
 STEPS = 400  # of the fit, from each of the three principal axes
 
 
@@ -61,7 +62,9 @@ def solid_of(geometry: Any, simplify: Simplify, *, robot: bool = True) -> Solid:
 
 
 def _enclose(vertices: NDArray[np.float64]) -> Arrays:
-    """Hull and capsule of the vertices (k, 3) as arrays."""
+    """Hull and capsule of the vertices (k, 3) as arrays; a sheet is given some thickness."""
+    if flat(vertices):
+        vertices = (vertices[:, None] + THICK * np.vstack([np.eye(3), -np.eye(3)])).reshape(-1, 3)
     hull = convex_hull(vertices)
     points = np.array(hull.points())
     faces = np.array([[hull.polygons(i)[c] for c in range(3)] for i in range(hull.num_polygons)], dtype=float)

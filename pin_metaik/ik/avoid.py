@@ -75,6 +75,4 @@ def _hopeless(problem: IKProblem, world: CollisionWorld, q: NDArray[np.float64])
         slack = sum(target.allowance) * LEVER
         if all(target.counts) and slack < HELD:
             held[int(chain.model.frames[frame].parentJoint)] = slack
-    return any(
-        contact.depth > held[a] + held[b] for contact, (a, b) in checker.contacts_of(q) if a in held and b in held
-    )
+    return any(contact.depth > held[a] + held[b] for contact, (a, b) in checker.contacts_of(q, held))

@@ -106,7 +106,7 @@ class IKResult:
                 return f"{spent}; this is the nearest{stuck}{lost}"
             case IKStatus.IN_COLLISION:
                 shown = "; ".join(map(str, self.contacts[:3])) + ("; ..." if len(self.contacts) > 3 else "")
-                return f"met only in collision, the least of them: {shown}"
+                return f"met only in collision; the least deep found: {shown}"
             case IKStatus.STOPPED:
                 return "stopped before it was solved; this is the best so far"
 
