@@ -49,13 +49,13 @@ class Near(NamedTuple):
     """Two bodies that are near each other, as a step needs them.
 
     Attributes:
-        distance: m; minus the depth of solids that overlap.
+        room: Distance beyond their margin, m; below 0 they collide.
         normal: (3,) unit vector from the first to the second, in the world.
         points: The nearest points (3,) of both, in the world, m.
         joints: Ids of the joints that carry them; 0 is the world.
     """
 
-    distance: float
+    room: float
     normal: NDArray[np.float64]
     points: tuple[NDArray[np.float64], NDArray[np.float64]]
     joints: tuple[int, int]

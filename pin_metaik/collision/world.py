@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.collision.body import Body, robot_bodies
 from pin_metaik.collision.checker import Checker
 from pin_metaik.collision.contact import Contact, Distance
+from pin_metaik.collision.layout import lay_out
 from pin_metaik.collision.obstacle import Obstacle, placement
 from pin_metaik.collision.pairs import Srdf, disabled_pairs
 from pin_metaik.collision.shapes import Shape
@@ -56,7 +57,8 @@ class CollisionWorld:
         Args:
             robot: A robot with collision geometry.
             obstacles: What stands in the world; more can be added later.
-            margin: Distance at or below which two bodies collide, m.
+            margin: Distance at or below which two bodies collide, m. Links that are mostly nearer to each other are
+                built so, and only kept from touching.
             srdf: A file with the pairs of links not to check; default: the robot's own, if it has one; ``False``: none.
                 Neighbours, links that always touch and links that never do are found out either way.
             simplify: ``"convex"`` hulls or ``"capsule"``s are checked before the original geometry, or ``"none"``.
@@ -215,7 +217,7 @@ class CollisionWorld:
         """The checks as they are laid out now."""
         if self._checker is None:
             bodies = (*self._links, *self._others.values())
-            self._checker = Checker.of(
+            self._checker = lay_out(
                 self.model, bodies, lambda a, b: pair_of(a.link, b.link) in self.disabled, self.margin, self.exact
             )
         return self._checker

@@ -83,7 +83,7 @@ class Push:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Rows (ROWS, n + 1) and least values (ROWS,) for the pairs that are near at q (nq,); the rest are empty."""
         rows, least = np.zeros((ROWS, problem.chain.n + 1)), np.full(ROWS, -np.inf)
-        near = sorted(world.checker.near(q), key=lambda pair: pair.distance)[:ROWS]
+        near = sorted(world.checker.near(q), key=lambda pair: pair.room)[:ROWS]
         model, data = problem.chain.model, problem.chain.data
         columns = [int(model.joints[int(j)].idx_v) for j in problem.chain.coordinates.joints]
         if near:
@@ -95,5 +95,5 @@ class Push:
                     at_point = pin.SE3(NO_TURN, point - data.oMi[joint].translation)
                     rows[k, :-1] += sign * (at_point.act(pin.Force(pair.normal, NO_TORQUE)).vector @ J)
             rows[k, -1] = 1.0
-            least[k] = self.gain * (world.margin + self.room - pair.distance)
+            least[k] = self.gain * (self.room - pair.room)
         return rows, least

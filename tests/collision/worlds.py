@@ -19,7 +19,9 @@ def robot_of(name: str) -> mik.Robot:
 
 
 @cache
-def world_of(name: str, scene: str | None = None, simplify: Simplify = "convex", exact: bool = True) -> mik.CollisionWorld:
+def world_of(
+    name: str, scene: str | None = None, simplify: Simplify = "convex", exact: bool = True
+) -> mik.CollisionWorld:
     obstacles = () if scene is None else load_scene(scene)
     return mik.CollisionWorld(robot_of(name), obstacles, simplify=simplify, exact=exact)
 
