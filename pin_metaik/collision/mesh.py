@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.errors import InvalidGeometry
 
 FLAT = 1e-9  # thickness of a set of points, in its lengths, below which it has none
+GROWTH = 1e-4  # of their distance from the centre that points may move outward, so as not to lie in one plane
 HUGE = 20.0  # m; a mesh larger than this was probably drawn in millimetres
 
 
@@ -105,13 +106,22 @@ class Mesh:
 
 
 def convex_hull(points: NDArray[np.float64], name: str = "mesh") -> Any:
-    """The convex hull of points (k, 3), as a ``coal.Convex``.
+    """The convex hull of points (k, 3), as a ``coal.Convex``; a little larger where coal cannot hold it otherwise.
 
     Raises:
         InvalidGeometry: If they all lie in one plane.
     """
     if flat(points):  # coal's hull takes the process down with it
         raise InvalidGeometry(f"{name} has no volume: its {len(points)} points lie in one plane")
+    try:
+        return _qhull(points)
+    except RuntimeError:  # a corner with more than 255 neighbours, where hundreds of points lie in one plane
+        grown = 1.0 + GROWTH * np.random.default_rng(0).random((len(points), 1))
+        centre = points.mean(axis=0)
+        return _qhull(centre + grown * (points - centre))
+
+
+def _qhull(points: NDArray[np.float64]) -> Any:
     column = coal.StdVec_Vec3s()
     column.extend(list(points))
     return coal.Convex.convexHull(column, True, "Qt")

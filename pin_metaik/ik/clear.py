@@ -58,7 +58,7 @@ class ClearSearch:
         while free is None and not (self.ledger.over() or self.complete):
             free = self._push(PUSHED)
             if free is None:
-                free = self._seed(seeder)
+                free = self.seed(seeder)
             if free is None:
                 free = self._others(np.array(list(islice(starts, ROUND))))
         return free
@@ -119,7 +119,7 @@ class ClearSearch:
                 return refined.x
         return None
 
-    def _seed(self, seeder: Metaheuristic) -> NDArray[np.float64] | None:
+    def seed(self, seeder: Metaheuristic) -> NDArray[np.float64] | None:
         """Search for a point that is near the target and not deep, and refine the best of them."""
         problem, checker, chain = self.problem, self.world.checker, self.problem.chain
 

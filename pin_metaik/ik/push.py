@@ -37,11 +37,11 @@ class Push:
     """
 
     iterations: int = 30
-    largest: float = 0.2
-    room: float = 1e-3
-    gain: float = 0.7
-    stiffness: float = 1e3
-    damping: float = 1e-4
+    largest: float = 0.5
+    room: float = 1e-4
+    gain: float = 0.9
+    stiffness: float = 100.0
+    damping: float = 1e-6
 
     def refine(
         self,
