@@ -14,10 +14,9 @@ from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.push import Push
 from pin_metaik.ik.solutions import VAIN, VAIN_EACH, gather
 from pin_metaik.ik.starts import BATCH, DEFAULT_SEED, Rng, drawn
-from pin_metaik.kinematics import Limits
 from pin_metaik.optimize import Metaheuristic, minimize
 
-NEAREST = 8  # entries of the atlas to start from
+NEAREST = 24  # entries of the atlas to start from
 CANDIDATES = 256  # solutions kept, to be told apart
 APART = 0.05  # rad or m between solutions; what is nearer collides alike
 OTHERS = 0.25  # of the budget, for other solutions of a redundant chain before any is pushed
@@ -50,17 +49,17 @@ class ClearSearch:
 
     def run(self, x: NDArray[np.float64], seeder: Metaheuristic) -> NDArray[np.float64] | None:
         """Coordinates (n,) that are a solution, from x (n,), which is one but for collisions; None: none was found."""
-        starts = self._starts(x)
+        starts = self.starts(x)
         share = OTHERS if self._redundant else 1.0
         free: NDArray[np.float64] | None = None
         while free is None and not (self.ledger.over(share) or self.complete or self.known == CANDIDATES):
-            free = self._others(next(starts)[None])
+            free = self.others(next(starts)[None])
         while free is None and not (self.ledger.over() or self.complete):
             free = self._push(PUSHED)
             if free is None:
                 free = self.seed(seeder)
             if free is None:
-                free = self._others(np.array(list(islice(starts, ROUND))))
+                free = self.others(np.array(list(islice(starts, ROUND))))
         return free
 
     def least_deep(self) -> NDArray[np.float64]:
@@ -68,22 +67,14 @@ class ClearSearch:
         least: NDArray[np.float64] = self.found[self._by_depth(0)[0]]
         return least
 
-    def _starts(self, x: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
-        """Starts (n,): x, the atlas' nearest entries, then random ones, for ever.
-
-        Where there are only so many solutions, each new one comes before them with one joint turned half round, which
-        is where others often are.
-        """
-        chain, turned = self.problem.chain, 0
+    def starts(self, x: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
+        """Starts (n,): x, the atlas' nearest entries, then random ones, for ever."""
         yield x
+        yield from self.problem.near(NEAREST)
         for index in count():
-            for start in self.problem.near(NEAREST) if index == 0 else drawn(chain, self.rng, index, BATCH):
-                while turned < self.known and not self._redundant:
-                    yield from half_turns(self.problem.limits, self.found[turned])
-                    turned += 1
-                yield start
+            yield from drawn(self.problem.chain, self.rng, index, BATCH)
 
-    def _others(self, starts: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    def others(self, starts: NDArray[np.float64]) -> NDArray[np.float64] | None:
         """Descend from starts (s, n), one by one; the first new solution that is free."""
         for start in starts:
             if self.known == CANDIDATES:  # forget all but the least deep
@@ -137,7 +128,7 @@ class ClearSearch:
             keep=ELITE,
         )
         self.ledger.add_search(found)
-        free = self._others(found.elite)
+        free = self.others(found.elite)
         for x in found.elite[:2] if free is None else ():
             refined = Push().refine(self.problem, self.world, x, self.base, self.ledger.left())
             self.ledger.spent += refined.evaluations
@@ -153,10 +144,3 @@ class ClearSearch:
         Q = self.problem.chain.q(self.found[first : self.known], self.base)
         order = np.argsort([self.world.checker.depth(q) for q in Q], kind="stable")
         return first + order.astype(np.int64)
-
-
-def half_turns(limits: Limits, x: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Starts (n, n) from a solution x (n,): one joint each turned half round, the way its limits have room for."""
-    starts = np.repeat(x[None], len(x), axis=0)
-    starts[np.diag_indices(len(x))] += np.where(x + np.pi > limits.upper, -np.pi, np.pi)
-    return limits.clip(starts)
