@@ -70,8 +70,8 @@ def checks(options: argparse.Namespace) -> list[str]:
         "",
         f"`world.in_collision(q)`, us over {options.configurations:,} random q: median (mean; 95th percentile). *all "
         "pairs*: Pinocchio on the meshes with every pair of links that moves, as one gets it without a world. The "
-        "other columns check the pairs that the world leaves; their number is in the second column. *exact*: what simplified "
-        "solids find is confirmed on the meshes, so that the answer is theirs; *alone*: it is not.",
+        "other columns check the pairs that the world leaves; their number is in the second column. *exact*: what "
+        "simplified solids find is confirmed on the meshes, so that the answer is theirs; *alone*: it is not.",
         "",
         "| robot | pairs | all pairs, meshes | meshes | **convex, exact** | **capsule, exact** | convex alone "
         "| capsule alone |",
@@ -187,9 +187,10 @@ def means(options: argparse.Namespace) -> list[str]:
         "## What each means brings",
         "",
         "The Panda's targets whose first solution collides, each means on its own: free solutions found, evaluations "
-        "and time spent a target. *others*: distinct solutions from the atlas and random starts, 500 evaluations at most. "
-        "*push*: quadratic programs from the first solution. *seeds*: one round of MTDE on distance from the target "
-        "plus depth, 1,000 evaluations, its elite refined and pushed. *rejection*: random starts, 500 evaluations at most.",
+        "and time spent a target. *others*: distinct solutions from the atlas and random starts, 500 evaluations at "
+        "most. *push*: quadratic programs from the first solution. *seeds*: one round of MTDE on distance from the "
+        "target plus depth, 1,000 evaluations, its elite refined and pushed. *rejection*: random starts, 500 "
+        "evaluations at most.",
         "",
         "| scene | targets | means | found | evaluations | ms |",
         "|---|---|---|---|---|---|",

@@ -49,7 +49,7 @@ class Checker:
             return True
         if not self.coarse.collides(q):
             return False
-        return not self.exact or self._confirmed(q, first=True) != []
+        return not self.exact or self._confirmed(q, self.coarse.colliding(q), first=True) != []
 
     def contacts(self, q: NDArray[np.float64]) -> tuple[Contact, ...]:
         """What collides at q (nq,), the deepest first; two bodies count once."""
@@ -67,13 +67,12 @@ class Checker:
 
         With ``joints`` only pairs that such joints carry, both of them.
         """
+        suspects = [k for k in self.coarse.colliding(q) if joints is None or all(j in joints for j in self._joints(k))]
         found = []
-        for k in self._confirmed(q) if self.exact else self.coarse.colliding(q):
-            a, b = (self.bodies[i].joint for i in self.pairs[k])
-            if joints is None or (a in joints and b in joints):
-                at = self._hulls(q, k)
-                depth = max(0.0, float(self.fine.margins[k]) - at.distance)
-                found.append((Contact(at.first, at.second, depth), (a, b)))
+        for k in self._confirmed(q, suspects) if self.exact else suspects:
+            at = self._hulls(q, k)
+            depth = max(0.0, float(self.fine.margins[k]) - at.distance)
+            found.append((Contact(at.first, at.second, depth), self._joints(k)))
         return found
 
     def nearest(self, q: NDArray[np.float64]) -> Distance:
@@ -105,14 +104,12 @@ class Checker:
             distance, result = self.wide.distance(k), self.wide.result(k)
             normal = np.array(result.normal)
             if 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none
-                joints = (self.bodies[self.pairs[k][0]].joint, self.bodies[self.pairs[k][1]].joint)
                 points = np.array(result.getNearestPoint1()), np.array(result.getNearestPoint2())
-                found.append(Near(distance - float(self.fine.margins[k]), normal, points, joints))
+                found.append(Near(distance - float(self.fine.margins[k]), normal, points, self._joints(k)))
         return found
 
-    def _confirmed(self, q: NDArray[np.float64], first: bool = False) -> list[int]:
-        """Numbers of the pairs that collide in both layers at q (nq,); with ``first`` at most one."""
-        suspects = self.coarse.colliding(q)
+    def _confirmed(self, q: NDArray[np.float64], suspects: list[int], first: bool = False) -> list[int]:
+        """Those of the suspected pairs that collide in the second layer at q (nq,); with ``first`` at most one."""
         found: list[int] = []
         if suspects:
             self.fine.place(q)
@@ -122,6 +119,10 @@ class Checker:
                 if first:
                     break
         return found
+
+    def _joints(self, pair: int) -> tuple[int, int]:
+        i, j = self.pairs[pair]
+        return self.bodies[i].joint, self.bodies[j].joint
 
     def _hulls(self, q: NDArray[np.float64], pair: int) -> Distance:
         """Distance of the convex hulls of a pair at q (nq,)."""
