@@ -47,9 +47,8 @@ class Checker:
         """Whether anything collides at q (nq,)."""
         if self.fixed:
             return True
-        if not self.coarse.collides(q):
-            return False
-        return not self.exact or self._confirmed(q, self.coarse.colliding(q), first=True) != []
+        # The second layer as a whole: to read from Python which pairs of the first collide takes longer.
+        return self.coarse.collides(q) and (not self.exact or self.fine.collides(q))
 
     def contacts(self, q: NDArray[np.float64]) -> tuple[Contact, ...]:
         """What collides at q (nq,), the deepest first; two bodies count once."""
@@ -108,17 +107,11 @@ class Checker:
                 found.append(Near(distance - float(self.fine.margins[k]), normal, points, self._joints(k)))
         return found
 
-    def _confirmed(self, q: NDArray[np.float64], suspects: list[int], first: bool = False) -> list[int]:
-        """Those of the suspected pairs that collide in the second layer at q (nq,); with ``first`` at most one."""
-        found: list[int] = []
+    def _confirmed(self, q: NDArray[np.float64], suspects: list[int]) -> list[int]:
+        """Those of the suspected pairs that collide in the second layer at q (nq,)."""
         if suspects:
             self.fine.place(q)
-        for k in suspects:
-            if self.fine.touches(k):
-                found.append(k)
-                if first:
-                    break
-        return found
+        return [k for k in suspects if self.fine.touches(k)]
 
     def _joints(self, pair: int) -> tuple[int, int]:
         i, j = self.pairs[pair]

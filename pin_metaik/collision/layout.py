@@ -12,7 +12,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from itertools import product
+from typing import Any, TypeAlias
 
 import coal
 import numpy as np
@@ -32,12 +33,13 @@ SAMPLES = 50
 MOSTLY = 0.5  # of the samples
 
 
-def lay_out(
-    model: pin.Model, bodies: tuple[Body, ...], allowed: Callable[[Body, Body], bool], margin: float, exact: bool
-) -> Checker:
+Allowed: TypeAlias = Callable[[Body, Body], bool]
+
+
+def lay_out(model: pin.Model, bodies: tuple[Body, ...], allowed: Allowed, margin: float, exact: bool) -> Checker:
     """The checks of all pairs of bodies that are not ``allowed`` to touch."""
-    every = [(i, j) for j in range(len(bodies)) for i in range(j) if not allowed(bodies[i], bodies[j])]
-    pairs = [(i, j) for i, j in every if bodies[i].joint != bodies[j].joint]
+    moving = [(i, j) for j in range(len(bodies)) for i in range(j) if bodies[i].joint != bodies[j].joint]
+    pairs = [(i, j) for i, j in moving if not allowed(bodies[i], bodies[j])]
     n = len(bodies)
     Q = random_configurations(model, np.random.default_rng(SEED), SAMPLES)
     hulls = [(body, body.solid.hull, body.placement) for body in bodies]
@@ -68,9 +70,19 @@ def lay_out(
         coarse,
         Layer.of(model, fine_shapes, [fine_pairs[k] for k in order], margins),
         replace(coarse, margins=margins + NEAR),
-        _fixed(bodies, every),
+        _fixed(bodies, allowed),
         exact,
     )
+
+
+def moved(checker: Checker, number: int, placement: pin.SE3, allowed: Allowed) -> Checker:
+    """The same checks with an obstacle, body ``number``, put somewhere else; the old checks are no longer good."""
+    n, bodies = len(checker.bodies), list(checker.bodies)
+    bodies[number] = replace(bodies[number], placement=placement)
+    for layer in (checker.coarse, checker.fine):
+        for piece in range(number, layer.geometry.ngeoms, n):  # the n coarse solids, originals and hulls, as they come
+            layer.geometry.geometryObjects[piece].placement = placement
+    return replace(checker, bodies=tuple(bodies), fixed=_fixed(tuple(bodies), allowed))
 
 
 def _hits(layer: Layer, Q: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -113,11 +125,12 @@ def _size(body: Body) -> float:
     return math.dist(hull.aabb_local.max_, hull.aabb_local.min_)
 
 
-def _fixed(bodies: tuple[Body, ...], pairs: list[tuple[int, int]]) -> tuple[Contact, ...]:
+def _fixed(bodies: tuple[Body, ...], allowed: Allowed) -> tuple[Contact, ...]:
     """Overlaps of the robot's base with what stands in the world; they need no margin, as neither can come nearer."""
     contacts = {}
-    for a, b in ((bodies[i], bodies[j]) for i, j in pairs):
-        if a.joint == b.joint == 0 and a.part != b.part:
+    standing = [body for body in bodies if body.joint == 0]
+    for a, b in product((body for body in standing if body.part), [body for body in standing if not body.part]):
+        if not allowed(a, b):
             at = hull_distance(a, b, a.placement, b.placement)
             if at.distance < 0.0 and _overlap(a, b):
                 contacts[a.link, b.link] = Contact(a.link, b.link, -at.distance)

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.collision.body import Body, robot_bodies
 from pin_metaik.collision.checker import Checker
 from pin_metaik.collision.contact import Contact, Distance
-from pin_metaik.collision.layout import lay_out
+from pin_metaik.collision.layout import lay_out, moved
 from pin_metaik.collision.obstacle import Obstacle, placement
 from pin_metaik.collision.pairs import Srdf, disabled_pairs
 from pin_metaik.collision.shapes import Shape
@@ -125,7 +125,9 @@ class CollisionWorld:
         there = placement(name, pose)
         self._others[name] = replace(self._others[name], placement=there)
         self.obstacles = tuple(replace(o, pose=there) if o.name == name else o for o in self.obstacles)
-        self._checker = None
+        if self._checker is not None:
+            number = [body.link for body in self._checker.bodies].index(name)
+            self._checker = moved(self._checker, number, there, self._allowed)
 
     def remove(self, name: str) -> None:
         """Take away an obstacle or a grasped object.
@@ -217,9 +219,7 @@ class CollisionWorld:
         """The checks as they are laid out now."""
         if self._checker is None:
             bodies = (*self._links, *self._others.values())
-            self._checker = lay_out(
-                self.model, bodies, lambda a, b: pair_of(a.link, b.link) in self.disabled, self.margin, self.exact
-            )
+            self._checker = lay_out(self.model, bodies, self._allowed, self.margin, self.exact)
         return self._checker
 
     def in_collision(self, q: ArrayLike) -> bool:
@@ -261,6 +261,9 @@ class CollisionWorld:
             InvalidConfiguration: If a row is not a configuration of the model.
         """
         return np.array([self.min_distance(q).distance for q in np.asarray(Q, dtype=float)])
+
+    def _allowed(self, a: Body, b: Body) -> bool:
+        return pair_of(a.link, b.link) in self.disabled
 
     def _enter(self, obstacle: Obstacle, joint: int, at: pin.SE3) -> None:
         if obstacle.name in self.names:

@@ -49,7 +49,8 @@ class ClearSearch:
 
     def run(self, x: NDArray[np.float64], seeder: Metaheuristic) -> NDArray[np.float64] | None:
         """Coordinates (n,) that are a solution, from x (n,), which is one but for collisions; None: none was found."""
-        starts = self.starts(x)
+        self.found[0], self.known = x, 1
+        starts = self.starts()
         share = OTHERS if self._redundant else 1.0
         free: NDArray[np.float64] | None = None
         while free is None and not (self.ledger.over(share) or self.complete or self.known == CANDIDATES):
@@ -67,9 +68,8 @@ class ClearSearch:
         least: NDArray[np.float64] = self.found[self._by_depth(0)[0]]
         return least
 
-    def starts(self, x: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
-        """Starts (n,): x, the atlas' nearest entries, then random ones, for ever."""
-        yield x
+    def starts(self) -> Iterator[NDArray[np.float64]]:
+        """Starts (n,): the atlas' nearest entries, then random ones, for ever."""
         yield from self.problem.near(NEAREST)
         for index in count():
             yield from drawn(self.problem.chain, self.rng, index, BATCH)
@@ -124,7 +124,7 @@ class ClearSearch:
             seeder,
             self.ledger.slice(SEEDING),
             self._generator,
-            seeds=self.found[: self.known],
+            seeds=self.found[self._by_depth(0)[:ELITE]],
             keep=ELITE,
         )
         self.ledger.add_search(found)
