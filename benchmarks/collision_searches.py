@@ -48,12 +48,7 @@ def rejection(chain: mik.Chain, world: mik.CollisionWorld, target: TargetLike, e
 
 def others(chain: mik.Chain, world: mik.CollisionWorld, target: TargetLike, evaluations: int, seed: int) -> Outcome:
     search, x = _begun(chain, world, target, evaluations, seed)
-    free = None
-    for start in search.starts():
-        free = search.others(start[None])
-        if free is not None or search.ledger.over() or search.complete:
-            break
-    return _ended(search, x, free)
+    return _ended(search, x, search.others(search.starts()))
 
 
 def push(chain: mik.Chain, world: mik.CollisionWorld, target: TargetLike, evaluations: int, seed: int) -> Outcome:

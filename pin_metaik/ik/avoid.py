@@ -65,14 +65,19 @@ def keep_clear(first: IKResult, q0: ArrayLike | None, solver: IKSolver, world: C
 def _hopeless(problem: IKProblem, world: CollisionWorld, q: NDArray[np.float64]) -> bool:
     """Whether every solution collides as this one, q (nq,), does: two bodies that stand, or that the target holds.
 
-    A frame with a whole pose for a target holds every body that is fixed to it, to within the tolerances.
+    A body stands when none of the chain's joints moves it. A frame with a whole pose for a target holds every body that
+    none of them moves against it, to within the tolerances.
     """
     checker, chain = world.checker, problem.chain
     if checker.fixed:
         return True
-    held = {0: 0.0}
+    model = chain.model
+    movers = {*chain.coordinates.joints.tolist(), *(int(j) for j in model.mimicking_joints)}
+    moved_by = [movers.intersection(supports) for supports in model.supports]
+    slacks = {0: 0.0}  # of a joint that is held like this one, m
     for frame, target in zip(chain.frame_ids, problem.targets, strict=True):
         slack = sum(target.allowance) * LEVER
         if all(target.counts) and slack < HELD:
-            held[int(chain.model.frames[frame].parentJoint)] = slack
+            slacks[int(model.frames[frame].parentJoint)] = slack
+    held = {j: slack for like, slack in slacks.items() for j in range(model.njoints) if moved_by[j] == moved_by[like]}
     return any(contact.depth > held[a] + held[b] for contact, (a, b) in checker.contacts_of(q, held))

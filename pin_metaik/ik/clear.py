@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import count, islice
+from collections.abc import Iterable, Iterator
+from itertools import count, cycle, islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from pin_metaik.optimize import Metaheuristic, minimize
 NEAREST = 24  # entries of the atlas to start from
 CANDIDATES = 256  # solutions kept, to be told apart
 APART = 0.05  # rad or m between solutions; what is nearer collides alike
-OTHERS = 0.25  # of the budget, for other solutions of a redundant chain before any is pushed
+OTHERS = 16  # starts of a redundant chain before any solution is pushed
 PUSHED = 4  # of the solutions found, those pushed in each round: the least deep
 SEEDING = 0.02  # of what is left, for a metaheuristic in each round
 ROUND = 256  # further starts in each round
@@ -51,16 +51,10 @@ class ClearSearch:
         """Coordinates (n,) that are a solution, from x (n,), which is one but for collisions; None: none was found."""
         self.found[0], self.known = x, 1
         starts = self.starts()
-        share = OTHERS if self._redundant else 1.0
-        free: NDArray[np.float64] | None = None
-        while free is None and not (self.ledger.over(share) or self.complete or self.known == CANDIDATES):
-            free = self.others(next(starts)[None])
+        free = self.others(islice(starts, OTHERS) if self._redundant else starts)
+        means = cycle((self._push, lambda: self.others(islice(starts, ROUND)), lambda: self.seed(seeder)))
         while free is None and not (self.ledger.over() or self.complete):
-            free = self._push(PUSHED)
-            if free is None:
-                free = self.seed(seeder)
-            if free is None:
-                free = self.others(np.array(list(islice(starts, ROUND))))
+            free = next(means)()
         return free
 
     def least_deep(self) -> NDArray[np.float64]:
@@ -74,9 +68,11 @@ class ClearSearch:
         for index in count():
             yield from drawn(self.problem.chain, self.rng, index, BATCH)
 
-    def others(self, starts: NDArray[np.float64]) -> NDArray[np.float64] | None:
-        """Descend from starts (s, n), one by one; the first new solution that is free."""
+    def others(self, starts: Iterable[NDArray[np.float64]]) -> NDArray[np.float64] | None:
+        """Descend from starts (n,), one by one; the first new solution that is free."""
         for start in starts:
+            if self.complete or self.ledger.over():
+                break
             if self.known == CANDIDATES:  # forget all but the least deep
                 keep = self._by_depth(0)[:PUSHED]
                 self.found[: len(keep)] = self.found[keep]
@@ -92,13 +88,11 @@ class ClearSearch:
             newest: NDArray[np.float64] = room[-1]
             if new and self._accepts(newest):
                 return newest
-            if self.complete or self.ledger.over():
-                break
         return None
 
-    def _push(self, most: int) -> NDArray[np.float64] | None:
+    def _push(self) -> NDArray[np.float64] | None:
         """Push the least deep of the solutions that have not been pushed yet out of collision."""
-        order = self._by_depth(self.pushed)[:most]
+        order = self._by_depth(self.pushed)[:PUSHED]
         chosen = self.found[order].copy()
         rest = np.delete(np.arange(self.known), np.concatenate([np.arange(self.pushed), order]))
         self.found[: self.known] = np.concatenate([self.found[: self.pushed], chosen, self.found[rest]])

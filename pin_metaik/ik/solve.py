@@ -35,7 +35,9 @@ def solve_ik(
         q0: (nq,) configuration to start from; joints outside the chain stay as they are in it. Default: the chain's
             reference.
         solver: How to search; default ``IKSolver()``.
-        world: What must not collide: the robot with itself, with what it holds, and with obstacles.
+        world: What must not collide: the robot with itself, with what it holds, and with obstacles. Where the
+            solver's solution does, others are searched for, by damped least squares whatever its refiner, then by
+            pushing them out of collision, and by the solver's seeder.
         rng: Seed or generator of every random choice; ``None`` is a fixed seed, so that the same call gives the same
             answer.
 

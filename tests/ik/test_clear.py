@@ -75,6 +75,16 @@ def test_a_target_inside_an_obstacle_is_told_at_once_with_names_and_depth() -> N
     assert result.contacts[0].depth > 0.01
 
 
+def test_a_target_that_holds_a_finger_in_an_obstacle_is_told_at_once() -> None:
+    pose = pin.SE3(pin.utils.rotate("x", np.pi), np.array([0.5, 0.0, 0.3]))
+    ball = Obstacle("pin", Box((0.1, 0.004, 0.02)), pose.act(np.array([0.0, 0.0, 0.005])))
+    world = mik.CollisionWorld(robot_of("panda"), [ball])
+    result = mik.solve_ik(chain_of("panda"), pose, world=world)
+    assert result.status is mik.IKStatus.IN_COLLISION
+    assert all("finger" in contact.first + contact.second for contact in result.contacts)
+    assert result.evaluations < 1000
+
+
 def test_an_obstacle_around_the_base_is_told_at_once() -> None:
     world = mik.CollisionWorld(robot_of("ur5"), [Obstacle("block", Box((0.3, 0.3, 0.08)), (0.0, 0.0, 0.04))])
     chain = chain_of("ur5")
