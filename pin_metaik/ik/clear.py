@@ -24,7 +24,7 @@ PUSHED = 4  # of the solutions found, those pushed in each round: the least deep
 SEEDING = 0.02  # of what is left, for a metaheuristic in each round
 ROUND = 256  # further starts in each round
 DEPTH_WEIGHT = 5.0  # what a metre of depth counts in it, in metres from the target
-ELITE = 8  # its best points that are refined
+ELITE = 8  # its best points that are refined, and the least deep solutions that it starts from
 
 
 class ClearSearch:
@@ -42,8 +42,10 @@ class ClearSearch:
         """Set up for a problem; ``base`` (nq,) holds the joints that the chain does not move."""
         self.problem, self.world, self.base, self.ledger, self.rng = problem, world, base, ledger, rng
         self.found = np.empty((CANDIDATES, problem.chain.n))
-        self.known = self.pushed = self.vain = 0
+        self.known = self.vain = 0
         self.complete = False
+        self._depths = np.full(CANDIDATES, np.nan)  # of the solutions found, NaN where not known yet
+        self._pushed: set[int] = set()
         self._redundant = problem.chain.n > len(problem.rows)
         self._generator = np.random.default_rng(DEFAULT_SEED if rng is None else rng)
 
@@ -52,14 +54,14 @@ class ClearSearch:
         self.found[0], self.known = x, 1
         starts = self.starts()
         free = self.others(islice(starts, OTHERS) if self._redundant else starts)
-        means = cycle((self._push, lambda: self.others(islice(starts, ROUND)), lambda: self.seed(seeder)))
+        means = cycle((self.push_found, lambda: self.others(islice(starts, ROUND)), lambda: self.seed(seeder)))
         while free is None and not (self.ledger.over() or self.complete):
             free = next(means)()
         return free
 
     def least_deep(self) -> NDArray[np.float64]:
         """Coordinates (n,) of the solution found that is least deep in collision."""
-        least: NDArray[np.float64] = self.found[self._by_depth(0)[0]]
+        least: NDArray[np.float64] = self.found[self._by_depth()[0]]
         return least
 
     def starts(self) -> Iterator[NDArray[np.float64]]:
@@ -74,9 +76,10 @@ class ClearSearch:
             if self.complete or self.ledger.over():
                 break
             if self.known == CANDIDATES:  # forget all but the least deep
-                keep = self._by_depth(0)[:PUSHED]
-                self.found[: len(keep)] = self.found[keep]
-                self.known, self.pushed = len(keep), 0
+                self.found[:ELITE] = self.found[self._by_depth()[:ELITE]]
+                self.known = ELITE
+                self._depths[:] = np.nan
+                self._pushed.clear()
             room = self.found[: self.known + 1]
             spent, known, row = gather(
                 self.problem, start[None], room, self.known, APART, 2, self.ledger.left(), branch=False
@@ -90,19 +93,20 @@ class ClearSearch:
                 return newest
         return None
 
-    def _push(self) -> NDArray[np.float64] | None:
-        """Push the least deep of the solutions that have not been pushed yet out of collision."""
-        order = self._by_depth(self.pushed)[:PUSHED]
-        chosen = self.found[order].copy()
-        rest = np.delete(np.arange(self.known), np.concatenate([np.arange(self.pushed), order]))
-        self.found[: self.known] = np.concatenate([self.found[: self.pushed], chosen, self.found[rest]])
-        self.pushed += len(order)
-        for x in chosen:
+    def _push(self, points: NDArray[np.float64]) -> NDArray[np.float64] | None:
+        """The first of the points (s, n) that can be pushed out of collision."""
+        for x in points:
             refined = Push().refine(self.problem, self.world, x, self.base, self.ledger.left())
             self.ledger.spent += refined.evaluations
             if refined.met:
                 return refined.x
         return None
+
+    def push_found(self) -> NDArray[np.float64] | None:
+        """Push the least deep of the solutions that have not been pushed yet out of collision."""
+        chosen = [i for i in self._by_depth() if i not in self._pushed][:PUSHED]
+        self._pushed.update(chosen)
+        return self._push(self.found[chosen])
 
     def seed(self, seeder: Metaheuristic) -> NDArray[np.float64] | None:
         """Search for a point that is near the target and not deep, and refine the best of them."""
@@ -118,23 +122,20 @@ class ClearSearch:
             seeder,
             self.ledger.slice(SEEDING),
             self._generator,
-            seeds=self.found[self._by_depth(0)[:ELITE]],
+            seeds=self.found[self._by_depth()[:ELITE]],
             keep=ELITE,
         )
         self.ledger.add_search(found)
         free = self.others(found.elite)
-        for x in found.elite[:2] if free is None else ():
-            refined = Push().refine(self.problem, self.world, x, self.base, self.ledger.left())
-            self.ledger.spent += refined.evaluations
-            if refined.met:
-                return refined.x
-        return free
+        return self._push(found.elite[:2]) if free is None else free
 
     def _accepts(self, x: NDArray[np.float64]) -> bool:
         return self.problem.accepts(self.problem.chain.q(x, self.base))
 
-    def _by_depth(self, first: int) -> NDArray[np.int64]:
-        """Numbers of the solutions from ``first`` on, the least deep first."""
-        Q = self.problem.chain.q(self.found[first : self.known], self.base)
-        order = np.argsort([self.world.checker.depth(q) for q in Q], kind="stable")
-        return first + order.astype(np.int64)
+    def _by_depth(self) -> list[int]:
+        """Numbers of the solutions found, the least deep first."""
+        chain, depths = self.problem.chain, self._depths
+        for i in np.flatnonzero(np.isnan(depths[: self.known])):
+            depths[i] = self.world.checker.depth(chain.q(self.found[i], self.base))
+        order: list[int] = np.argsort(depths[: self.known], kind="stable").tolist()
+        return order
