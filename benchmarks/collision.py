@@ -174,7 +174,8 @@ def scenes(options: argparse.Namespace) -> list[str]:
         f"{options.targets} random configurations free of collisions, the tip among the obstacles; the target is the "
         "pose of the tip, or its position alone, to 1e-5 m and 1e-5 rad. *rejection*: the same descent from uniformly "
         "random starts until a solution is free, with the same budget of kernel evaluations. *first free*: the share "
-        "whose solution without a world happens to be free. Then: solved within so many evaluations, and the rest at 50,000.",
+        "whose solution without a world happens to be free. Then: solved within so many evaluations, and the rest at "
+        "50,000.",
         "",
         "| scene | robot | target | first free | search | within 50 | within 200 | **within 50,000** | p50 ms | p95 ms "
         "| max ms | mean evaluations |",
