@@ -119,7 +119,7 @@ class Checker:
 
     def _hulls(self, q: NDArray[np.float64], pair: int) -> Distance:
         """Distance of the convex hulls of a pair at q (nq,)."""
-        data, _ = self.fine.scratch
+        data = self.fine.scratch.data
         pin.forwardKinematics(self.fine.model, data, q)
         bodies = [self.bodies[i] for i in self.pairs[pair]]
         return hull_distance(*bodies, *(data.oMi[body.joint] * body.placement for body in bodies))

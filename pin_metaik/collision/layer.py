@@ -5,13 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from threading import local
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
 from pin_metaik.collision.body import Body
+
+
+class Scratch(NamedTuple):
+    """What Pinocchio and coal write into; their results as lists, which are read in a twentieth of a vector's time."""
+
+    data: pin.Data
+    shapes: pin.GeometryData
+    collisions: list[Any]
+    distances: list[Any]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,48 +54,48 @@ class Layer:
         return Layer(model, geometry, np.zeros(len(pairs)) if margins is None else margins)
 
     @property
-    def scratch(self) -> tuple[pin.Data, pin.GeometryData]:
-        """Pinocchio's data, one a thread, with the margins set."""
+    def scratch(self) -> Scratch:
+        """Room for results, one a thread, with the margins set."""
         try:
-            scratch: tuple[pin.Data, pin.GeometryData] = self._local.scratch
-            return scratch
+            scratch: Scratch = self._local.scratch
         except AttributeError:
-            data = self.geometry.createData()
-            for request, margin in zip(data.collisionRequests, self.margins.tolist(), strict=True):
+            shapes = self.geometry.createData()
+            for request, margin in zip(shapes.collisionRequests, self.margins.tolist(), strict=True):
                 request.security_margin = margin
-            scratch = self._local.scratch = self.model.createData(), data
-            return scratch
+            results = list(shapes.collisionResults), list(shapes.distanceResults)
+            scratch = self._local.scratch = Scratch(self.model.createData(), shapes, *results)
+        return scratch
 
     def place(self, q: NDArray[np.float64]) -> None:
         """Put every shape where it is at q (nq,): what ``touches``, ``distance`` and ``contact`` look at."""
-        data, shapes = self.scratch
+        data, shapes, *_ = self.scratch
         pin.updateGeometryPlacements(self.model, data, self.geometry, shapes, q)
 
     def collides(self, q: NDArray[np.float64]) -> bool:
         """Whether any pair collides at q (nq,); stops at the first."""
-        data, shapes = self.scratch
+        data, shapes, *_ = self.scratch
         return bool(pin.computeCollisions(self.model, data, self.geometry, shapes, q, True))
 
     def colliding(self, q: NDArray[np.float64]) -> list[int]:
         """Numbers of the pairs that collide at q (nq,)."""
-        data, shapes = self.scratch
+        data, shapes, collisions, _ = self.scratch
         pin.computeCollisions(self.model, data, self.geometry, shapes, q, False)
-        return [k for k, result in enumerate(shapes.collisionResults) if result.isCollision()]
+        return [k for k, result in enumerate(collisions) if result.isCollision()]
 
     def touches(self, pair: int) -> bool:
         """Whether a pair collides where the shapes were placed."""
-        return bool(pin.computeCollision(self.geometry, self.scratch[1], pair))
+        return bool(pin.computeCollision(self.geometry, self.scratch.shapes, pair))
 
     def distance(self, pair: int) -> float:
         """Distance of a pair where the shapes were placed, m; of solids that overlap minus their depth."""
-        return float(pin.computeDistance(self.geometry, self.scratch[1], pair).min_distance)
+        return float(pin.computeDistance(self.geometry, self.scratch.shapes, pair).min_distance)
 
     def distances(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
         """Distances (p,) of all pairs at q (nq,), m."""
-        data, shapes = self.scratch
+        data, shapes, _, distances = self.scratch
         pin.computeDistances(self.model, data, self.geometry, shapes, q)
-        return np.array([result.min_distance for result in shapes.distanceResults])
+        return np.array([result.min_distance for result in distances])
 
     def result(self, pair: int) -> Any:
         """What coal found when the distance of a pair was last asked for."""
-        return self.scratch[1].distanceResults[pair]
+        return self.scratch.distances[pair]

@@ -54,9 +54,16 @@ class ClearSearch:
         self.found[0], self.known = x, 1
         starts = self.starts()
         free = self.others(islice(starts, OTHERS) if self._redundant else starts)
-        means = cycle((self.push_found, lambda: self.others(islice(starts, ROUND)), lambda: self.seed(seeder)))
-        while free is None and not (self.ledger.over() or self.complete):
-            free = next(means)()
+        for means in cycle(("push", "others", "seed")):
+            if free is not None or self.ledger.over() or self.complete:
+                break
+            match means:
+                case "push":
+                    free = self.push()
+                case "others":
+                    free = self.others(islice(starts, ROUND))
+                case _:
+                    free = self.seed(seeder)
         return free
 
     def least_deep(self) -> NDArray[np.float64]:
@@ -93,7 +100,7 @@ class ClearSearch:
                 return newest
         return None
 
-    def _push(self, points: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    def _pushed_out(self, points: NDArray[np.float64]) -> NDArray[np.float64] | None:
         """The first of the points (s, n) that can be pushed out of collision."""
         for x in points:
             refined = Push().refine(self.problem, self.world, x, self.base, self.ledger.left())
@@ -102,11 +109,11 @@ class ClearSearch:
                 return refined.x
         return None
 
-    def push_found(self) -> NDArray[np.float64] | None:
+    def push(self) -> NDArray[np.float64] | None:
         """Push the least deep of the solutions that have not been pushed yet out of collision."""
         chosen = [i for i in self._by_depth() if i not in self._pushed][:PUSHED]
         self._pushed.update(chosen)
-        return self._push(self.found[chosen])
+        return self._pushed_out(self.found[chosen])
 
     def seed(self, seeder: Metaheuristic) -> NDArray[np.float64] | None:
         """Search for a point that is near the target and not deep, and refine the best of them."""
@@ -127,7 +134,7 @@ class ClearSearch:
         )
         self.ledger.add_search(found)
         free = self.others(found.elite)
-        return self._push(found.elite[:2]) if free is None else free
+        return self._pushed_out(found.elite[:2]) if free is None else free
 
     def _accepts(self, x: NDArray[np.float64]) -> bool:
         return self.problem.accepts(self.problem.chain.q(x, self.base))
