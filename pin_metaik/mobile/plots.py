@@ -79,11 +79,21 @@ def draw_plan(figure: Any, plan: PathPlan) -> None:
     )
 
 
-def draw_runs(ax: Any, scene: Scene, runs: Sequence[Path], optimum: Path | None, colour: str = BLUE) -> None:
-    """Many runs over one another in their scene, and the shortest path dashed."""
+def draw_runs(
+    ax: Any,
+    scene: Scene,
+    runs: Sequence[Path],
+    optimum: Path | None,
+    colour: str = BLUE,
+    colliding: Sequence[Path] = (),
+) -> None:
+    """Many runs over one another in their scene, the shortest path dashed, and dotted what collides."""
     draw_scene(ax, scene)
+    alpha = max(0.08, min(0.6, 6 / max(len(runs) + len(colliding), 1)))
     for path in runs:
-        ax.plot(*path.points.T, color=colour, linewidth=0.7, alpha=max(0.08, min(0.6, 6 / max(len(runs), 1))))
+        ax.plot(*path.points.T, color=colour, linewidth=0.7, alpha=alpha)
+    for path in colliding:
+        ax.plot(*path.points.T, ":", color="black", linewidth=0.9, alpha=alpha)
     if optimum is not None:
         ax.plot(*optimum.points.T, "--", color="black", linewidth=1.4)
 
