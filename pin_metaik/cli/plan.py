@@ -47,7 +47,9 @@ def plan(
         float | None, typer.Option(help=f"To keep on top of that; default: 0, or {MARGIN} with a trajectory.")
     ] = None,
     join: Annotated[str, typer.Option(help="Corners of grown obstacles: mitre or round.")] = "mitre",
-    vehicle: Annotated[str, typer.Option(help="Whose limits the trajectory keeps.")] = "nomad200",
+    vehicle: Annotated[
+        str, typer.Option(help="Whose limits the trajectory keeps: nomad200, nomad200_driver, or a .json with others.")
+    ] = "nomad200",
     paths: Annotated[
         int, typer.Option(min=1, help="Homotopy classes to try; with a trajectory the quickest of them counts.")
     ] = 1,
@@ -89,7 +91,10 @@ def plan(
     best = min(range(len(motions)), key=lambda i: (not motions[i].success, motions[i].time), default=0)
     motion = motions[best] if motions else None
 
-    report: dict[str, Any] = {"path": plans[best].as_dict()}
+    found = plans[best].as_dict()
+    if len(plans) > 1:
+        found["alternatives"] = [each.as_dict() for i, each in enumerate(plans) if i != best]
+    report: dict[str, Any] = {"path": found}
     if motion is not None:
         report["trajectory"] = {key: value for key, value in motion.as_dict().items() if key != "samples"}
     if as_json:
@@ -97,7 +102,7 @@ def plan(
     else:
         _show(plans, motions, best)
     if out is not None:
-        for file in _write(out, world, plans[best], motion, figures):
+        for file in _write(out, plans, best, found, motion, figures):
             Console(stderr=as_json).print(str(file), markup=False, highlight=False, soft_wrap=True)
     raise typer.Exit(0 if path.success and (motion is None or motion.success) else 1)
 
@@ -158,16 +163,20 @@ def _show(plans: list[PathPlan], motions: list[TrajectoryPlan], best: int) -> No
         console.print(f"quickest: path {best + 1}, {motions[best].time:.3f} s")
 
 
-def _write(folder: Path, scene: Scene, plan: PathPlan, motion: TrajectoryPlan | None, figures: bool) -> list[Path]:
+def _write(
+    folder: Path, plans: list[PathPlan], best: int, found: dict[str, Any], motion: TrajectoryPlan | None, figures: bool
+) -> list[Path]:
     from pin_metaik.mobile import plots
 
+    plan, scene = plans[best], plans[best].problem.scene
+    others = [each.path for each in plans if each is not plan]
     folder.mkdir(parents=True, exist_ok=True)
     names = ["scene.json", "path.json", "path.csv"]
     (folder / "scene.json").write_text(json.dumps(scene.as_dict()), encoding="utf-8")
-    (folder / "path.json").write_text(json.dumps(plan.as_dict(), allow_nan=False), encoding="utf-8")
+    (folder / "path.json").write_text(json.dumps(found, allow_nan=False), encoding="utf-8")
     plan.path.write(folder / "path.csv")
     if figures:
-        plots.save(folder / "path.png", lambda figure: plots.draw_plan(figure, plan))
+        plots.save(folder / "path.png", lambda figure: plots.draw_plan(figure, plan, others))
         names.append("path.png")
     if motion is not None:
         motion.trajectory.write_csv(folder / "trajectory.csv")

@@ -63,7 +63,7 @@ class Network:
 
     def outputs(self, w: Array, X: Array) -> Array:
         """Outputs (n,) for inputs X (n, inputs)."""
-        pieces = (X[first : first + ROWS] for first in range(0, len(X), ROWS))
+        pieces = (X[first : first + ROWS] for first in range(0, len(X) or 1, ROWS))
         return np.concatenate([self._forward(w, piece)[-1][:, 0] for piece in pieces])
 
     def jacobian(self, w: Array, X: Array) -> Array:
