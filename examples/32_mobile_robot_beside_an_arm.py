@@ -32,7 +32,7 @@ def main() -> None:
     # The hand shall point down, 0.1 m above the mobile robot.
     chain, down = mik.Chain(panda.model, "panda_hand_tcp"), np.diag([1.0, -1.0, -1.0])
     rest = mik.solve_ik(chain, pin.SE3(down, np.array([0.3, 0, 0.6])))
-    above = parked.translation + [0, 0, HEIGHT + 0.1]
+    above = parked.translation + np.array([0, 0, HEIGHT + 0.1])
     reached = mik.solve_ik(chain, pin.SE3(down, above), rest.q, solver=mik.IKSolver(select="nearest"))
     print(f"{panda.name}: {reached.status}, the hand above it")
 

@@ -30,8 +30,8 @@ def test_on_ten_obstacles_every_run_is_free_and_the_median_gap_is_what_it_should
     assert 0 < median(plan.gap for plan in plans) < limit
 
 
-@pytest.mark.parametrize("seed", [2, 32])
-def test_on_easy_scenes_with_one_corner_pso_comes_within_a_percent(seed):
+@pytest.mark.parametrize("seed", [2, 32])  # of 0 to 39, 0, 27 and 37 have one corner, too: there it ends 4 to 5 % above
+def test_on_two_scenes_with_one_corner_pso_comes_within_a_percent(seed):
     problem = PathProblem.of(random_scene(15, seed, start=(0.1, 0.1), goal=(8.5, 8)))
     assert len(problem.optimum.corners) == 1
     plans = [plan_path(problem, "pso", fitness="paper", rng=run) for run in range(15)]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.mobile.files import read_json
 
 INCH = 0.0254  # m
 
@@ -80,12 +80,7 @@ def load_vehicle(source: str | Path) -> SynchroDrive:
 
 
 def _read(path: Path) -> SynchroDrive:
-    try:
-        given = json.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise InvalidSetting(f"cannot read {path}: {error.strerror}") from None
-    except ValueError as error:
-        raise InvalidSetting(f"{path} is not JSON: {error}") from None
+    given = read_json(path, InvalidSetting)
     if not isinstance(given, dict) or (unknown := given.keys() - {"name", *LIMITS}):
         what = f"has {', '.join(sorted(unknown))}" if isinstance(given, dict) else "is no object"
         raise InvalidSetting(f"{path} is not a vehicle: it {what}; known: name, {', '.join(LIMITS)}")
