@@ -87,7 +87,7 @@ def plan(
             callback=tick,
         )
     plans = mobile.plan_alternatives(problem, paths) if paths > 1 else [path]
-    motions = [_motion(each, robot, keep, trajectory, rng) for each in plans] if trajectory and path.success else []
+    motions = list(_motions(plans, robot, keep, trajectory, rng)) if trajectory and path.success else []
     best = min(range(len(motions)), key=lambda i: (not motions[i].success, motions[i].time), default=0)
     motion = motions[best] if motions else None
 
@@ -119,21 +119,26 @@ def _scene(source: str, start: Place, goal: Place, clearance: float) -> Scene:
     return mobile.random_scene(int(count or 15), int(seed), gap=gap, start=start, goal=goal)
 
 
-def _motion(plan: PathPlan, robot: SynchroDrive, radius: float, method: str, rng: int) -> TrajectoryPlan:
+def _motions(
+    plans: list[PathPlan], robot: SynchroDrive, radius: float, method: str, rng: int
+) -> Iterator[TrajectoryPlan]:
     from pin_metaik import mobile
     from pin_metaik.learn import OutsideTraining
 
-    with _progress("trajectory") as tick, warnings.catch_warnings():
-        warnings.simplefilter("ignore", OutsideTraining)  # the plan's notes say it
-        return mobile.plan_trajectory(
-            plan.path,
-            robot,
-            plan.problem.scene.obstacles,
-            method=method,  # type: ignore[arg-type]  # checked where it came in
-            radius=radius,
-            rng=rng,
-            callback=tick,
-        )
+    model = mobile.learn_turn(robot) if method == "ann" else None
+    for plan in plans:
+        with _progress("trajectory") as tick, warnings.catch_warnings():
+            warnings.simplefilter("ignore", OutsideTraining)  # the plan's notes say it
+            yield mobile.plan_trajectory(
+                plan.path,
+                robot,
+                plan.problem.scene.obstacles,
+                method=method,  # type: ignore[arg-type]  # checked where it came in
+                radius=radius,
+                rng=rng,
+                model=model,
+                callback=tick,
+            )
 
 
 @contextmanager
