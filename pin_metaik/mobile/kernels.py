@@ -51,7 +51,8 @@ def blocker(
 ) -> int:
     """The vertex whose edge (or which itself) stands between a and b, or -1. `first` is looked at first.
 
-    A corner on the line blocks it: the two shorter segments, which end there, stand for the long one.
+    A vertex on the line blocks it, unless it lies amid an edge along the line. At a corner the two shorter segments,
+    which end there, stand for the long one; anywhere else the free space is convex, and the line leaves it.
     """
     length = math.hypot(bx - ax, by - ay)
     ux, uy = (bx - ax) / length, (by - ay) / length
@@ -67,11 +68,9 @@ def blocker(
         if -slack <= sp <= slack:  # the vertex is on the line
             t = ux * px + uy * py
             if slack < t < length - slack:
-                if bends[k]:
-                    return k
                 o = before[k]
                 so = ux * (vertices[o, 1] - ay) - uy * (vertices[o, 0] - ax)
-                if (so > slack and sq < -slack) or (so < -slack and sq > slack):
+                if bends[k] or abs(so) > slack or abs(sq) > slack:
                     return k
         elif (sp > 0) != (sq > 0) and not -slack <= sq <= slack:  # the edge crosses the line
             share = sp / (sp - sq)
