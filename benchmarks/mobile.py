@@ -3,8 +3,9 @@
     pip install -e '.[mobile,plots]'
     python benchmarks/mobile.py --out benchmarks/mobile.md
 
-An hour, most of it for the networks of the paper on learned turns; ``--quick`` takes a minute. Times on the page are
-processor time of this process, so that a busy machine does not count; ratios mean more than digits.
+An hour, most of it for the networks of the paper on learned turns; ``--quick`` takes a minute. Reports that are there
+already are not made again. Times on the page are processor time of this process, so that a busy machine does not count;
+ratios mean more than digits.
 """
 
 from __future__ import annotations
@@ -180,7 +181,8 @@ def papers(folder: Path, quick: bool) -> Iterator[str]:
     for name, extra in (("path_planning", ["--runs", "100"]), ("trajectory", ["--long"])):
         arguments = ["reproduce", name, *(["--quick", "--runs", "2"] if quick else extra)]
         shown = [*arguments, "--out", str(folder)]
-        subprocess.run([sys.executable, "-m", "pin_metaik", *shown], check=True, stdout=subprocess.DEVNULL)
+        if not (folder / f"{name}.md").exists():
+            subprocess.run([sys.executable, "-m", "pin_metaik", *shown], check=True, stdout=subprocess.DEVNULL)
         with (folder / f"{name}_claims.csv").open(encoding="utf-8") as file:
             heading, *rows = csv.reader(file)
         yield f"\n`pin-metaik {' '.join(arguments)}`: [{name}]({folder.name}/{name}.md).\n"

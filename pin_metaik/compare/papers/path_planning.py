@@ -99,7 +99,7 @@ def comparison(trials: Sequence[PathTrial]) -> Table:
     columns = (
         *(Column("scene"), Column("fitness"), Column("method"), Column("runs"), Column("free %", ".0f")),
         *(Column("best gap %", ".2f"), Column("median gap %", ".2f"), Column("worst gap %", ".1f")),
-        *(Column("median f", ".2f"), Column("ms a run", ".0f")),
+        *(Column("median f", ".2f"), Column("ms a run", ".1f")),
     )
     return Table("path_planning", "Gap to the shortest path", columns, rows)
 
@@ -119,7 +119,7 @@ def speed(done: Sequence[Any]) -> str:
 
 def shortest(trials: Sequence[ExactTrial]) -> Table:
     """The shortest paths."""
-    columns = (Column("scene"), Column("length", ".9f"), Column("corners"), Column("ms", ".1f"))
+    columns = (Column("scene"), Column("length", ".9f"), Column("corners"), Column("processor ms", ".1f"))
     rows: list[tuple[Value, ...]] = [(t.scene, t.length, t.corners, 1e3 * t.seconds) for t in trials]
     return Table("path_planning_exact", "Shortest paths, from the polygons on", columns, rows)
 
@@ -189,7 +189,7 @@ def figures(trials: Sequence[PathTrial]) -> tuple[Figure, ...]:
                 runs = of(trials, scene, method, "paper")
                 seconds = [1e3 * t.seconds for t in runs]
                 ax.plot([t.run + 1 for t in runs], seconds, ".-", color=COLOURS[method], linewidth=0.8, label=method)
-            ax.set(title=scene, xlabel="run", ylabel="time, ms", ylim=(0, None))
+            ax.set(title=scene, xlabel="run", ylabel="processor time, ms", ylim=(0, None))
             ax.grid(alpha=0.3)
             ax.legend(frameon=False)
 
@@ -215,7 +215,7 @@ def figures(trials: Sequence[PathTrial]) -> tuple[Figure, ...]:
             (wide[0], 7.6),
         ),
         Figure("path_planning_convergence", "Best fitness so far: medians thick, runs thin.", convergence, wide),
-        Figure("path_planning_times", "Time of every run.", times, wide),
+        Figure("path_planning_times", "Processor time of every run.", times, wide),
     )
 
 
