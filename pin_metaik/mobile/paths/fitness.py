@@ -11,7 +11,7 @@ import shapely
 from numpy.typing import NDArray
 
 from pin_metaik.errors import UnknownName
-from pin_metaik.mobile import kernels
+from pin_metaik.mobile.paths import fitness_kernels as kernels
 from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.growth import grow, rings
 from pin_metaik.mobile.world.scene import Point

@@ -14,7 +14,7 @@ import shapely
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from pin_metaik.mobile import kernels
+from pin_metaik.mobile.paths import visibility_kernels as kernels
 from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.growth import rings
 from pin_metaik.mobile.world.scene import Point
