@@ -147,7 +147,7 @@ def trajectories(scenes: int) -> Iterator[str]:
         worst_clearance = min(worst_clearance, *(plan.clearance - plan.radius for plan in (dp, de, fast)))
         worst_end = max(worst_end, *(plan.end_error for plan in (dp, de, fast)))
         assert dp.success and de.success and fast.success
-        times = (dp.stop_and_turn, dp.time, 100 * (de.time / dp.time - 1), fast.time)
+        times = (dp.stop_and_turn, dp.time, max(0.0, 100 * (de.time / dp.time - 1)), fast.time)
         rows.append([seed - 1, len(dp.v), *(f"{value:.3f}" for value in times), f"{ms:.1f}"])
     yield "\n\n## Trajectories of the Nomad 200 through 15 random obstacles\n"
     yield (
