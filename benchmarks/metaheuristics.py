@@ -1,6 +1,6 @@
 """Our metaheuristics next to those of mealpy, pymoo and scipy: what they reach with equal evaluations, and how fast.
 
-    pip install scipy pymoo cma && pip install --no-deps mealpy     # mealpy pins numpy 1.26 but runs with 2.x
+    pip install pymoo cma pandas && pip install --no-deps mealpy    # mealpy pins numpy 1.26 but runs with 2.x
     python benchmarks/metaheuristics.py [--seeds 25] [--evaluations 20000] [--out benchmarks/metaheuristics.md]
 
 Every contender gets the same functions, evaluations and population; where the peer has the setting, also the same
@@ -61,7 +61,9 @@ def ours(algorithm: Metaheuristic) -> Run:
     return lambda f, evaluations, seed: minimize(f, f.box, algorithm, Budget(evaluations), rng=seed).cost
 
 
-def with_mealpy(make: Callable[[int], object], agents: int = AGENTS) -> Run:
+def with_mealpy(make: Callable[[int], object], mode: str = "single", agents: int = AGENTS) -> Run:
+    """Mode "single" evaluates one agent after the other, "swarm" a generation at once."""
+
     def run(f: Shifted, evaluations: int, seed: int) -> float:
         formula, _ = FUNCTIONS[f.name]
         problem = {
@@ -70,7 +72,7 @@ def with_mealpy(make: Callable[[int], object], agents: int = AGENTS) -> Run:
             "minmax": "min",
             "log_to": None,
         }
-        return make(evaluations // agents - 1).solve(problem, seed=seed).target.fitness
+        return make(evaluations // agents - 1).solve(problem, mode=mode, seed=seed).target.fitness
 
     return run
 
@@ -115,14 +117,13 @@ def contenders() -> Iterator[Contender]:
     a = ALGORITHMS
     yield Contender("GWO", ours(a["gwo"](AGENTS)))
     if mealpy:
-        from mealpy import DE, GA, GWO, PSO
+        from mealpy import GA, GWO, PSO
 
         yield Contender("mealpy OriginalGWO", with_mealpy(lambda n: GWO.OriginalGWO(n, AGENTS)), "GWO")
     yield Contender("DE rand/1/bin", ours(a["de"](AGENTS, F=0.5, CR=0.9)))
     yield Contender("scipy rand1bin", with_scipy("rand1bin"), "DE rand/1/bin")
     if mealpy:
-        de = with_mealpy(lambda n: DE.OriginalDE(n, AGENTS, wf=0.5, cr=0.9, strategy=0))
-        yield Contender("mealpy OriginalDE, strategy 0", de, "DE rand/1/bin")
+        yield from mealpy_de(0, "DE rand/1/bin")
     if pymoo:
         de = with_pymoo(
             lambda: PymooDE(
@@ -132,8 +133,12 @@ def contenders() -> Iterator[Contender]:
         yield Contender("pymoo DE/rand/1/bin", de, "DE rand/1/bin")
     yield Contender("DE best/1/bin", ours(a["de"](AGENTS, F=0.5, CR=0.9, strategy="best/1/bin")))
     yield Contender("scipy best1bin", with_scipy("best1bin"), "DE best/1/bin")
+    if mealpy:
+        yield from mealpy_de(1, "DE best/1/bin")
     yield Contender("DE current-to-best/1/bin", ours(a["de"](AGENTS, F=0.5, CR=0.9, strategy="current-to-best/1/bin")))
     yield Contender("scipy currenttobest1bin", with_scipy("currenttobest1bin"), "DE current-to-best/1/bin")
+    if mealpy:
+        yield from mealpy_de(4, "DE current-to-best/1/bin")
     yield Contender("PSO constriction", ours(a["pso"](AGENTS)))
     w, c = 0.7298, 0.7298 * 2.05  # the same equation, multiplied out
     if mealpy:
@@ -157,13 +162,16 @@ def contenders() -> Iterator[Contender]:
     if mealpy:
         pso = with_mealpy(lambda n: PSO.LDW_PSO(n, AGENTS, c1=2.0, c2=2.0, w_min=0.4, w_max=0.9))
         yield Contender("mealpy LDW_PSO", pso, "PSO inertia")
-    yield Contender("GA roulette, one-point", ours(a["ga"](AGENTS)))
-    yield Contender("GA tournament, one-point", ours(a["ga"](AGENTS, selection="tournament")))
-    if mealpy:
-        ga = with_mealpy(  # 0.02 a gene: as many mutations as 0.2 a child
-            lambda n: GA.BaseGA(n, AGENTS, pc=0.9, pm=0.02, selection="tournament", crossover="one_point")
-        )
-        yield Contender("mealpy BaseGA, tournament, one_point", ga, "GA tournament, one-point")
+    for selection in ("roulette", "tournament"):
+        label = f"GA {selection}, one-point"
+        yield Contender(label, ours(a["ga"](AGENTS, selection=selection)))
+        if mealpy:
+            ga = with_mealpy(  # 0.02 a gene: as many mutations as 0.2 a child
+                lambda n, selection=selection: GA.BaseGA(
+                    n, AGENTS, pc=0.9, pm=0.02, selection=selection, crossover="one_point"
+                )
+            )
+            yield Contender(f"mealpy BaseGA, {selection}, one_point", ga, label)
     yield Contender("GA tournament, blend", ours(a["ga"](AGENTS, selection="tournament", crossover="blend")))
     if pymoo:
         ga = with_pymoo(lambda: PymooGA(pop_size=AGENTS, sampling=FloatRandomSampling()))
@@ -173,6 +181,14 @@ def contenders() -> Iterator[Contender]:
     yield Contender("SFLA", ours(a["sfla"]()))
     yield Contender("QPSO", ours(a["qpso"](AGENTS)))
     yield Contender("CMA-ES (package cma)", ours(a["cmaes"]()))
+
+
+def mealpy_de(strategy: int, ours: str) -> Iterator[Contender]:
+    from mealpy import DE
+
+    for mode, how in (("single", "asynchronous"), ("swarm", "synchronous")):
+        run = with_mealpy(lambda n: DE.OriginalDE(n, AGENTS, wf=0.5, cr=0.9, strategy=strategy), mode)
+        yield Contender(f"mealpy OriginalDE {strategy}, {how}", run, ours)
 
 
 def measure(contender: Contender, seeds: int, evaluations: int) -> tuple[dict[str, np.ndarray], float]:
