@@ -81,8 +81,7 @@ class Reading:
     half_range: float
 
     def __str__(self) -> str:
-        who = {"worst": "worst frog", "all": "every frog"}[self.leapers]
-        return f"{who}, +-{self.half_range:g} deg"
+        return f"SFLA {self.leapers}, +-{self.half_range:g} deg"
 
     def evaluations(self, row: Row) -> int:
         """One a frog, and then as its text or its times have it.

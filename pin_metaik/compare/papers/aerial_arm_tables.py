@@ -59,7 +59,7 @@ def table_readings(trials: Sequence[Trial], numbers: Iterable[int]) -> Table:
             lines.append((f"row {number}", str(reading), reading.evaluations(ROWS[number]), ROWS[number].J, *ours))
     columns = (
         Column("row"),
-        Column("who leaps, joint range"),
+        Column("which frogs leap, joint range"),
         Column("evals", ","),
         Column("J paper", ".3g"),
         *SUMMARY[:3],
@@ -119,10 +119,10 @@ def effort() -> str:
 
 def versus_de(trials: Sequence[Trial], methods: Mapping[float, str]) -> str:
     """How often each of the methods finds the right region, in a sentence."""
-    names = {f"SFLA by the text ({TEXT})": str(TEXT), f"SFLA by the times ({TIMES})": str(TIMES)}
-    names |= {method: method for method in methods.values()}
-    found = ", ".join(f"{label}: {solved(of(trials, method=method))}" for label, method in names.items())
-    return f"Runs of all rows that found the right region. {found}. DE has the evaluations of the text's SFLA."
+    found = "; ".join(
+        f"{name}: {solved(of(trials, method=name))}" for name in (str(TEXT), str(TIMES), *methods.values())
+    )
+    return f"Runs that found the right region, of all rows: {found}. DE has the evaluations of the text's SFLA."
 
 
 def at_the_walls(trials: Sequence[Trial]) -> str:
