@@ -45,6 +45,24 @@ NAMES = ("sphere", "rastrigin", "ackley")
 DIMENSION, AGENTS = 10, 50
 
 NOTES = """
+## Where a peer is better
+
+- *DE rand/1/bin, mealpy's default.* It puts a child in its parent's place at once, so that the next child of the same
+  generation can already descend from it (asynchronous). Storn and Price (1997) keep the generations apart, and so do
+  ours, scipy, pymoo, and mealpy if asked for a generation at once (synchronous): then it does as ours does. That is the
+  paper's letter, and what evaluating whole populations at once takes. Around the best vector, which asynchronous
+  generations follow the more closely, ours are the better ones.
+- *GA with blend crossover, pymoo's GA on Rastrigin.* Not the same operators, the nearest there are: simulated binary
+  crossover, polynomial mutation close to the parent's gene, and children that compete with all parents; ours are
+  BLX-0.5, one gene drawn anew anywhere, one elite. On the other two functions ours is better.
+
+## Peers that differ
+
+- mealpy's PSO moves a particle only to where it is better, and draws coordinates anew that have left the box.
+- mealpy's GA lets a child replace the worst of a tenth of the population, if it is better: many more elites than our
+  one. Its tournaments are among a fifth of the population, ours between two.
+- IGWO (with the schedule of the RV-7FL paper), MTDE, SFLA and QPSO are in neither package. CMA-ES is the package `cma`
+  in pymoo as it is here.
 """
 
 Run = Callable[[Shifted, int, int], float]  # function, evaluations, seed -> best cost
