@@ -54,7 +54,8 @@ NOTES = """
   generations follow the more closely, ours are the better ones.
 - *GA with blend crossover, pymoo's GA on Rastrigin.* Not the same operators, the nearest there are: simulated binary
   crossover, polynomial mutation close to the parent's gene, and children that compete with all parents; ours are
-  BLX-0.5, one gene drawn anew anywhere, one elite. On the other two functions ours is better.
+  BLX-0.5, one gene drawn anew anywhere, and one elite. On the other two functions ours is better; with five elites it
+  is on all three. The paper speaks of elitism without a number, so one stays the default.
 
 ## Peers that differ
 
@@ -190,10 +191,11 @@ def contenders() -> Iterator[Contender]:
                 )
             )
             yield Contender(f"mealpy BaseGA, {selection}, one_point", ga, label)
-    yield Contender("GA tournament, blend", ours(a["ga"](AGENTS, selection="tournament", crossover="blend")))
-    if pymoo:
-        ga = with_pymoo(lambda: PymooGA(pop_size=AGENTS, sampling=FloatRandomSampling()))
-        yield Contender("pymoo GA (tournament, SBX, PM)", ga, "GA tournament, blend")
+    for label, elites in (("GA tournament, blend", 1), ("GA tournament, blend, 5 elites", 5)):
+        yield Contender(label, ours(a["ga"](AGENTS, selection="tournament", crossover="blend", elites=elites)))
+        if pymoo:
+            ga = with_pymoo(lambda: PymooGA(pop_size=AGENTS, sampling=FloatRandomSampling()))
+            yield Contender("pymoo GA (tournament, SBX, PM)", ga, label)
     yield Contender("IGWO", ours(a["igwo"](AGENTS)))
     yield Contender("MTDE", ours(a["mtde"](AGENTS)))
     yield Contender("SFLA", ours(a["sfla"]()))
@@ -251,16 +253,17 @@ def main() -> None:
         f"| | {' | '.join(NAMES)} | ours | us / evaluation |",
         "|---|" + "---|" * (len(NAMES) + 2),
     ]
-    measured: dict[str, dict[str, np.ndarray]] = {}
+    measured: dict[str, tuple[dict[str, np.ndarray], float]] = {}
     for contender in contenders():
         if options.only not in contender.label + contender.peer_of:
             continue
-        costs, microseconds = measure(contender, options.seeds, options.evaluations)
-        measured[contender.label] = costs
+        if contender.label not in measured:  # a peer of two of ours is measured once
+            measured[contender.label] = measure(contender, options.seeds, options.evaluations)
+        costs, microseconds = measured[contender.label]
         label, verdicts = f"**{contender.label}**", ""
         if contender.peer_of:
             label = contender.label
-            verdicts = ", ".join(verdict(measured[contender.peer_of][name], costs[name]) for name in NAMES)
+            verdicts = ", ".join(verdict(measured[contender.peer_of][0][name], costs[name]) for name in NAMES)
         cells = ["{1:.2g} ({0:.1g} .. {2:.1g})".format(*np.quantile(costs[name], (0.25, 0.5, 0.75))) for name in NAMES]
         lines.append(f"| {label} | {' | '.join(cells)} | {verdicts} | {microseconds:.1f} |")
         print(lines[-1], flush=True)
