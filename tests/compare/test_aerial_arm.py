@@ -110,7 +110,7 @@ def test_every_row_is_run_in_both_readings_and_those_compared_in_all():
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [14, 18])
 def test_read_by_the_printed_times_a_row_finds_the_region_in_the_best_of_three_runs(number):
-    """One run in five ends elsewhere, so three do in one trial of a hundred; rows 17 and 19 take too long here."""
+    """One run in four ends elsewhere, so three do in one trial of sixty; rows 17 and 19 take too long here."""
     here, row = case(arm(FREE), number), ROWS[number]
     runs = (
         search(here, "SFLA", TIMES.sfla(row), TIMES.evaluations(row), run, np.random.default_rng(run)).work()
