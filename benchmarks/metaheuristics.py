@@ -56,6 +56,9 @@ NOTES = """
   crossover, polynomial mutation close to the parent's gene, and children that compete with all parents; ours are
   BLX-0.5, one gene drawn anew anywhere, and one elite. On the other two functions ours is better; with five elites it
   is on all three. The paper speaks of elitism without a number, so one stays the default.
+- *GWO, mealpy's, by a little.* The same in 25 seeds; in 300 of ours against 60 of its own, medians of 2.5 against 1.7
+  on the sphere (p = 0.007), 11 against 9.0 on Rastrigin (p = 0.004), 1.2 against 1.2 on Ackley. Its wolves move only to
+  where they are better off; in the paper all of them move. With its rule ours come to 1.6, 10 and 1.2.
 
 ## Peers that differ
 
