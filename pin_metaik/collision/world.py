@@ -89,6 +89,10 @@ class CollisionWorld:
         for obstacle in self.obstacles:
             self._permit(obstacle.name, obstacle.touching)
 
+    def __getstate__(self) -> dict[str, object]:
+        """Pickle without the checks, which hold scratch of this process: they are laid out again."""
+        return {**self.__dict__, "_checker": None}
+
     @property
     def names(self) -> tuple[str, ...]:
         """Links with geometry, obstacles and grasped objects."""

@@ -14,8 +14,10 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.ik.fast import run_lane
+from pin_metaik.ik.problem import check_world
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solve import solve_one
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
@@ -40,6 +42,7 @@ class IKBatch:
         seconds: Time the whole batch took, s.
         chain: The chain.
         targets: What was asked.
+        world: The world that nothing must collide in, if one was given.
     """
 
     q: NDArray[np.float64]
@@ -51,11 +54,13 @@ class IKBatch:
     seconds: float
     chain: Chain = field(repr=False)
     targets: Sequence[TargetLike] | NDArray[np.float64] = field(repr=False)
+    world: CollisionWorld | None = field(default=None, repr=False)
 
     def __len__(self) -> int:
         return len(self.q)
 
     def __getitem__(self, i: int) -> IKResult:
+        world, collides = self.world, self.status[i] is IKStatus.IN_COLLISION
         return IKResult(
             self.q[i],
             self.status[i],
@@ -65,6 +70,8 @@ class IKBatch:
             self.seconds / len(self),
             self.chain,
             self.targets[i],
+            world=world,
+            contacts=world.pairs_in_collision(self.q[i]) if world is not None and collides else (),
         )
 
     def __iter__(self) -> Iterator[IKResult]:
@@ -77,6 +84,7 @@ def solve_ik_batch(
     q0: ArrayLike | None = None,
     *,
     solver: IKSolver | None = None,
+    world: CollisionWorld | None = None,
     workers: int | None = None,
     rng: Rng = None,
 ) -> IKBatch:
@@ -87,17 +95,19 @@ def solve_ik_batch(
         targets: Poses (k, 4, 4) or positions (k, 3), which go through one compiled loop; or a list of any targets.
         q0: (nq,) configuration to start all from, or (k, nq), one for each; default: the chain's reference.
         solver: How to search; default ``IKSolver()``.
+        world: What must not collide.
         workers: Threads; default: one a core. The answers do not depend on it.
         rng: Seed or generator of every random choice; ``None`` is a fixed seed.
 
     Raises:
         InvalidTarget: If a target is none; its number is named.
         InvalidConfiguration: If ``q0`` is not (nq,) or (k, nq), or not finite.
-        InvalidSetting: If ``workers`` is less than one.
+        InvalidSetting: If ``workers`` is less than one, or the world is another model's than the chain.
     """
     began = perf_counter()
     if workers is not None and workers < 1:
         raise InvalidSetting(f"workers is at least 1, got {workers}")
+    check_world(chain, world)
     solver = solver or DEFAULT_SOLVER
     seed = int(rng.integers(2**62)) if isinstance(rng, np.random.Generator) else rng
     array = _as_array(targets)
@@ -106,12 +116,12 @@ def solve_ik_batch(
     bases = _bases(chain, q0, k)
     batch = IKBatch(
         bases.copy(), np.zeros(k, bool), np.empty(k, object), np.zeros(k), np.zeros(k), np.zeros(k, int), 0.0,
-        chain, asked,
+        chain, asked, world,
     )  # fmt: skip
 
     def alone(i: int) -> None:
         try:
-            result = solve_one(chain, asked[i], bases[i], solver, seed)
+            result = solve_one(chain, asked[i], bases[i], solver, seed, world)
         except InvalidTarget as error:
             raise InvalidTarget(f"target {i}: {error}") from None
         batch.q[i], batch.success[i], batch.status[i] = result.q, result.success, result.status
@@ -162,6 +172,8 @@ def _judge(
         & (orientation <= tolerances[1])
         & (chain.inside(q) == q).all(axis=1)
     )
+    if batch.world is not None:
+        met[met] = [not batch.world.checker.collides(one) for one in q[met]]
     batch.success[part] = met
     batch.status[part] = IKStatus.SOLVED
     left: NDArray[np.int64] = np.arange(part.start, part.stop)[~met]

@@ -68,8 +68,7 @@ class IKProblem:
             FrameNotFound: If a target names a frame that is not the chain's.
             InvalidSetting: If the world's model is not the chain's.
         """
-        if world is not None and world.model is not chain.model and world.model != chain.model:
-            raise InvalidSetting(f"the world is of {world.model.name!r}, not of the chain's model {chain.model.name!r}")
+        check_world(chain, world)
         several = len(chain.frames) > 1 or (
             isinstance(target, (list, tuple)) and any(isinstance(one, (Target, pin.SE3)) for one in target)
         )
@@ -149,6 +148,12 @@ class IKProblem:
     def accepts(self, q: NDArray[np.float64]) -> bool:
         """Whether q (nq,) is a solution."""
         return self.verdict(q).accepted
+
+
+def check_world(chain: Chain, world: CollisionWorld | None) -> None:
+    """Raise InvalidSetting if the world is another model's than the chain."""
+    if world is not None and world.model is not chain.model and world.model != chain.model:
+        raise InvalidSetting(f"the world is of {world.model.name!r}, not of the chain's model {chain.model.name!r}")
 
 
 @cache

@@ -50,19 +50,25 @@ def solve_ik(
         InvalidBounds: If a joint of the chain has no finite range to search in.
         InvalidSetting: If the world is another model's than the chain.
     """
-    solver = solver or DEFAULT_SOLVER
-    if world is None:
-        return solve_one(chain, target, q0, solver, rng)
-    if solver.select == "first":
-        return keep_clear(solve_one(chain, target, q0, solver, rng), q0, solver, world, rng)
-    return keep_clear(solver.solve(IKProblem.of(chain, target, world), q0, rng), q0, solver, world, rng)
+    return solve_one(chain, target, q0, solver or DEFAULT_SOLVER, rng, world)
 
 
 def solve_one(
-    chain: Chain, target: TargetLike | Sequence[TargetLike], q0: ArrayLike | None, solver: IKSolver, rng: Rng
+    chain: Chain,
+    target: TargetLike | Sequence[TargetLike],
+    q0: ArrayLike | None,
+    solver: IKSolver,
+    rng: Rng,
+    world: CollisionWorld | None,
 ) -> IKResult:
-    """By the fast lane where it leads to the end, otherwise the long way on from there."""
+    """By the fast lane where it leads to the end, otherwise the long way on from there; clear of collisions, if asked.
+
+    A choice among solutions is one among those that are clear.
+    """
     fast = solve_fast(chain, target, q0, solver, rng)
     if isinstance(fast, IKResult):
-        return fast
-    return solver.solve(IKProblem.of(chain, target), q0, rng, first=fast)
+        result = fast
+    else:
+        choice = None if solver.select == "first" else world
+        result = solver.solve(IKProblem.of(chain, target, choice), q0, rng, first=fast)
+    return result if world is None else keep_clear(result, q0, solver, world, rng)

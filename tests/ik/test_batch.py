@@ -1,11 +1,14 @@
 """Batches: every answer is the one its target gets alone, whatever the number of workers."""
 
+import pickle
+
 import numpy as np
 import pinocchio as pin
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import pin_metaik as mik
+from pin_metaik.collision import load_scene
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting, InvalidTarget
 from tests.robots_under_test import chain_of
 
@@ -83,3 +86,30 @@ def test_bad_input_names_the_target() -> None:
         mik.solve_ik_batch(chain, np.repeat(np.eye(4)[None], 3, axis=0), np.zeros((2, 6)))
     with pytest.raises(InvalidSetting, match="workers"):
         mik.solve_ik_batch(chain, [[0.3, 0.3, 0.3]], workers=0)
+
+
+def test_a_batch_in_a_world_is_what_each_target_gets_alone_there() -> None:
+    robot = mik.load_robot("ur5")
+    chain, world = mik.Chain(robot.model, robot.frame), mik.CollisionWorld(robot, load_scene("table"))
+    poses = chain.poses(chain.box.sample(np.random.default_rng(0), 60))[:, 0]
+    one, two = (mik.solve_ik_batch(chain, poses, world=world, workers=workers) for workers in (1, 2))
+    assert_array_equal(one.q, two.q)
+    assert one.success.any()
+    assert not world.in_collision_batch(one.q[one.success]).any()
+    for i in range(60):
+        alone = mik.solve_ik(chain, poses[i], world=world)
+        assert_array_equal(alone.q, one.q[i])
+        assert alone.status is one[i].status
+        assert alone.contacts == one[i].contacts
+    with pytest.raises(InvalidSetting, match="not of the chain's model"):
+        mik.solve_ik_batch(chain_of("panda"), poses, world=world)
+
+
+def test_results_with_a_world_are_pickled() -> None:
+    robot = mik.load_robot("ur5")
+    chain, world = mik.Chain(robot.model, robot.frame), mik.CollisionWorld(robot, load_scene("table"))
+    result = mik.solve_ik(chain, [0.3, 0.3, 0.6], world=world)
+    again = pickle.loads(pickle.dumps(result))
+    assert again.success and again.verify()
+    Q = chain.q(chain.box.sample(np.random.default_rng(0), 200))
+    assert_array_equal(again.world.in_collision_batch(Q), world.in_collision_batch(Q))
