@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from pin_metaik.compare import plots
+from pin_metaik.compare.papers import plots
 from pin_metaik.compare.papers.paper import Job, Options, Paper
 from pin_metaik.compare.papers.trajectory_setup import (
     CONTROLS,

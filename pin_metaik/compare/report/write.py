@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
-from pin_metaik.compare.report import Figure, Section, Table
+from pin_metaik.compare.report.parts import Figure, Section, Table
 from pin_metaik.errors import MissingExtra
 
 DPI = 150

@@ -4,10 +4,10 @@ import sys
 import pytest
 from rich.console import Console
 
-from pin_metaik.compare import write as writing
 from pin_metaik.compare.report import Column, Figure, Section, Table
-from pin_metaik.compare.show import show
-from pin_metaik.compare.write import markdown, markdown_table, write
+from pin_metaik.compare.report import write as writing
+from pin_metaik.compare.report.show import show
+from pin_metaik.compare.report.write import markdown, markdown_table, write
 from pin_metaik.errors import MissingExtra
 
 TABLE = Table("t", "Costs", (Column("method"), Column("F mm", ".2g")), [("GWO", 1 / 3), ("MTDE", None)])
