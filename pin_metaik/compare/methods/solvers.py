@@ -1,0 +1,75 @@
+"""This library's solvers as methods: Jacobian methods, metaheuristics, hybrids of both, and the default."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.compare.cost import price_of, steps_within
+from pin_metaik.compare.method import Answer
+from pin_metaik.compare.methods.priced import Priced
+from pin_metaik.ik import IKProblem, IKResult, IKSolver, IKStatus, Refiner, solve_ik
+from pin_metaik.ik.refine import make_refiner
+from pin_metaik.optimize import Budget, Metaheuristic
+
+
+@dataclass(frozen=True)
+class Search:
+    """Starts or a metaheuristic, then a refiner, as ``IKSolver`` combines them.
+
+    Attributes:
+        name: What it is called.
+        seeder: A metaheuristic, by name or as an object; ``None``: the given start, then random ones.
+        refiner: A refiner, by name or as an object; ``None``: the metaheuristic's best is the answer.
+        starts: How many starts without a seeder; ``None``: until the budget is spent.
+    """
+
+    name: str
+    seeder: str | Metaheuristic | None = None
+    refiner: str | Refiner | None = None
+    starts: int | None = None
+
+    @cached_property
+    def solver(self) -> IKSolver:
+        """The solver, but for its budget."""
+        refiner = None if self.refiner is None else Priced(make_refiner(self.refiner))
+        return IKSolver(self.seeder, refiner, starts=self.starts, trace=refiner is None)
+
+    def solve(self, problem: IKProblem, x0: NDArray[np.float64], budget: int, rng: np.random.Generator) -> Answer:
+        """Search within the budget."""
+        solver = replace(self.solver, budget=Budget(evaluations=budget))
+        return answer(solver.solve(problem, problem.chain.q(x0), rng))
+
+
+@dataclass(frozen=True)
+class Default:
+    """``solve_ik`` as everybody calls it. All of its evaluations are priced as if they came with a Jacobian.
+
+    Attributes:
+        name: What it is called.
+        select: Which solution it shall give: see ``IKSolver``.
+    """
+
+    name: str
+    select: str = "first"
+
+    def solve(self, problem: IKProblem, x0: NDArray[np.float64], budget: int, rng: np.random.Generator) -> Answer:
+        """Solve within the budget."""
+        solver = IKSolver(budget=Budget(evaluations=max(1, steps_within(budget))), select=self.select)
+        chain = problem.chain
+        found = answer(solve_ik(chain, problem.targets[0], chain.q(x0), solver=solver, rng=rng))
+        return replace(found, evaluations=price_of(found.evaluations or 0))
+
+
+def answer(result: IKResult) -> Answer:
+    """A result as an answer.
+
+    Raises:
+        KeyboardInterrupt: If Ctrl-C ended the search, which keeps it for itself.
+    """
+    if result.status is IKStatus.STOPPED:
+        raise KeyboardInterrupt
+    return Answer(result.x, result.success, result.evaluations, str(result.status), result.trace)
