@@ -121,10 +121,10 @@ def write_parquet(folder: Path, trials: Iterable[Trial]) -> Path:
 
     text, number, real, truth = pa.string(), pa.int64(), pa.float64(), pa.bool_()
     types = {
-        "robot": text, "case": text, "method": text, "target": number, "seed": number, "solved": truth,
-        "claimed": truth, "status": text, "error": text, "position_error": real, "orientation_error": real,
-        "displacement": real, "evaluations": number, "allowed": number, "x": pa.list_(real), "curve": pa.list_(real),
-        "seconds": real,
+        "robot": text, "case": text, "method": text, "target": number, "seed": number, "allowed": number,
+        "solved": truth, "met": truth, "claimed": truth, "status": text, "error": text, "position_error": real,
+        "orientation_error": real, "displacement": real, "evaluations": number, "x": pa.list_(real),
+        "curve": pa.list_(real), "seconds": real,
     }  # fmt: skip
     rows = [trial.row() for trial in sorted(trials, key=lambda trial: trial.key)]
     path = folder / PARQUET

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
 
-from pin_metaik.compare.case import Case
+from pin_metaik.compare.case import Case, Task
 from pin_metaik.compare.cases import CASES
 from pin_metaik.compare.method import Method
 from pin_metaik.compare.methods import METHODS
@@ -137,21 +137,25 @@ class Unit:
     budget: int
     rng: int
 
+    def task(self) -> Task:
+        """The task, the same whoever tries it."""
+        chain = _arm(self.spec, self.robot, self.case, self.rng)
+        return self.case.draw(chain, generator(self.rng, self.robot, self.case.name, self.target))
+
     def work(self) -> list[Trial]:
         """Run the trials; a case that cannot draw its task is an error in each of their rows."""
         try:
-            chain = _arm(self.spec, self.robot, self.case, self.rng)
-            task = self.case.draw(chain, generator(self.rng, self.robot, self.case.name, self.target))
+            task = self.task()
         except Exception as error:
             return [
-                failed(self.robot, self.case.name, method.name, self.target, seed, self.budget, error, 0.0)
+                failed(Trial(self.robot, self.case.name, method.name, self.target, seed, self.budget), error)
                 for method, seed in self.left
             ]
         trials = []
         for method, seed in self.left:
             given = (self.robot, self.case, task, method, self.target, seed, self.budget, self.rng)
-            if (id(chain), method.name) not in _warm:  # tables and compiled code are made before anything is timed
-                _warm.add((id(chain), method.name))
+            if (id(task.chain), method.name) not in _warm:  # tables and compiled code are made before anything is timed
+                _warm.add((id(task.chain), method.name))
                 attempt(*given)
             trials.append(attempt(*given))
         return trials

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from time import process_time
 from typing import Any
 
@@ -29,15 +29,16 @@ class Trial:
         method: Name of the method.
         target: Number of the task.
         seed: Number of the repetition: other random numbers, and another start where the case leaves it free.
+        allowed: Kernel evaluations that were allowed.
         solved: Whether it is a success by the case's judgement, within what was allowed.
-        claimed: Whether the method says that it solved it.
+        met: Whether every target is within the tolerances and inside the limits, by Pinocchio.
+        claimed: Whether the method says that it is.
         status: How it ended, in the method's words.
         error: What was raised, or None.
         position_error: Of the worst target of the task, by Pinocchio, m.
         orientation_error: rad.
         displacement: How far the joints went from the start to the last answer, |x - x0|, rad or m.
         evaluations: Kernel evaluations spent; None when the method does not tell.
-        allowed: Kernel evaluations that were allowed.
         x: (n,) the last answer.
         curve: Best cost so far at the shares ``CURVE`` of the budget, of methods that keep it.
         seconds: Processor time, s. The one thing that differs from run to run.
@@ -48,18 +49,19 @@ class Trial:
     method: str
     target: int
     seed: int
-    solved: bool
-    claimed: bool
-    status: str
-    error: str | None
-    position_error: float | None
-    orientation_error: float | None
-    displacement: float | None
-    evaluations: int | None
     allowed: int
-    x: tuple[float | None, ...] | None
-    curve: tuple[float | None, ...] | None
-    seconds: float | None
+    solved: bool = False
+    met: bool = False
+    claimed: bool = False
+    status: str = "ERROR"
+    error: str | None = None
+    position_error: float | None = None
+    orientation_error: float | None = None
+    displacement: float | None = None
+    evaluations: int | None = None
+    x: tuple[float | None, ...] | None = None
+    curve: tuple[float | None, ...] | None = None
+    seconds: float | None = None
 
     @property
     def key(self) -> tuple[str, str, str, int, int]:
@@ -102,62 +104,50 @@ def attempt(robot: str, case: Case, task: Task, method: Method, target: int, see
 
     All methods start a repetition from the same coordinates.
     """
-    allowed = budget * len(task.targets)
+    path = (robot, case.name, target, seed)
+    row = Trial(robot, case.name, method.name, target, seed, budget * len(task.targets))
     began = process_time()
     try:
-        x0 = (
-            task.start
-            if task.start is not None
-            else task.chain.box.sample(generator(rng, robot, case.name, target, seed), 1)[0]
-        )
-        generators = [
-            np.random.default_rng(child)
-            for child in sequence(rng, robot, case.name, target, seed, method.name).spawn(len(task.targets))
-        ]
-        problems = task.problems
-        answers: list[Answer] = []
-        x = x0
+        start = task.chain.box.sample(generator(rng, *path), 1)[0] if task.start is None else task.start
+        own = sequence(rng, *path, method.name).spawn(len(task.targets))
+        x, answers, problems = start, list[Answer](), task.problems
         began = process_time()
-        for problem, own in zip(problems, generators, strict=True):
-            answers.append(method.solve(problem, x.copy(), budget, own))
+        for problem, child in zip(problems, own, strict=True):
+            answers.append(method.solve(problem, x.copy(), budget, np.random.default_rng(child)))
             x = np.asarray(answers[-1].x, dtype=float)
         seconds = process_time() - began
         verdicts = [problem.verdict(task.chain.q(a.x)) for problem, a in zip(problems, answers, strict=True)]
-        done = Attempt(x0, answers, verdicts)
-        told = [answer.evaluations for answer in answers if answer.evaluations is not None]
-        spent = sum(told) if len(told) == len(answers) else None
-        return Trial(
-            robot,
-            case.name,
-            method.name,
-            target,
-            seed,
-            solved=(spent is None or spent <= allowed) and bool(case.judge(task, done)),
-            claimed=all(answer.claimed for answer in answers),
-            status=answers[-1].status,
-            error=None,
-            position_error=_finite(max(verdict.position_error for verdict in verdicts)),
-            orientation_error=_finite(max(verdict.orientation_error for verdict in verdicts)),
-            displacement=_finite(float(np.linalg.norm(travel(task.chain, x0, x)))),
-            evaluations=spent,
-            allowed=allowed,
-            x=tuple(map(_finite, x.tolist())),
-            curve=_curve(answers, budget),
-            seconds=seconds,
-        )
+        return _judged(row, case, task, Attempt(start, answers, verdicts), _curve(answers, budget), seconds)
     except Exception as error:  # a method, or a case, of anybody: the others go on
-        return failed(robot, case.name, method.name, target, seed, allowed, error, process_time() - began)
+        return failed(row, error, process_time() - began)
 
 
-def failed(
-    robot: str, case: str, method: str, target: int, seed: int, allowed: int, error: Exception, seconds: float
-) -> Trial:
+def failed(row: Trial, error: Exception, seconds: float = 0.0) -> Trial:
     """The row of a trial that raised."""
-    words = f"{type(error).__name__}: {error}"
-    return Trial(
-        robot, case, method, target, seed, False, False, "ERROR", words, None, None, None, None, allowed, None, None,
-        seconds,
-    )  # fmt: skip
+    return replace(row, error=f"{type(error).__name__}: {error}", seconds=seconds)
+
+
+def _judged(
+    row: Trial, case: Case, task: Task, done: Attempt, curve: tuple[float | None, ...] | None, seconds: float
+) -> Trial:
+    """The row of a trial that came to an end; who spends more than was allowed has not solved it."""
+    told = [answer.evaluations for answer in done.answers if answer.evaluations is not None]
+    spent = sum(told) if len(told) == len(done.answers) else None
+    last = done.X[-1]
+    return replace(
+        row,
+        solved=(spent is None or spent <= row.allowed) and bool(case.judge(task, done)),
+        met=done.reached,
+        claimed=all(answer.claimed for answer in done.answers),
+        status=done.answers[-1].status,
+        position_error=_finite(max(verdict.position_error for verdict in done.verdicts)),
+        orientation_error=_finite(max(verdict.orientation_error for verdict in done.verdicts)),
+        displacement=_finite(float(np.linalg.norm(travel(task.chain, done.x0, last)))),
+        evaluations=spent,
+        x=tuple(map(_finite, last.tolist())),
+        curve=curve,
+        seconds=seconds,
+    )
 
 
 def _number(step: str | int) -> int:
