@@ -12,7 +12,7 @@ from typing import Any
 from pin_metaik.compare.case import Case, Task
 from pin_metaik.compare.cases import CASES
 from pin_metaik.compare.method import Method
-from pin_metaik.compare.methods import METHODS
+from pin_metaik.compare.methods import named
 from pin_metaik.compare.methods.peers import Peer
 from pin_metaik.compare.trial import Trial, attempt, failed, generator
 from pin_metaik.errors import InvalidSetting, UnknownName
@@ -201,9 +201,7 @@ def method_of(method: str | Method) -> Method:
     """
     found = imported("method", method) if isinstance(method, str) and ":" in method else method
     if isinstance(found, str):
-        if found not in METHODS:
-            raise UnknownName("method", found, METHODS)
-        return METHODS[found]
+        return named(found)
     if isinstance(found, type) or not isinstance(found, Method):
         raise InvalidSetting(
             f"not a method: {found!r}; give a name or an object with a name and solve(problem, x0, budget, rng)"

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pin_metaik.compare.method import Method
 from pin_metaik.compare.methods.peers import PEERS
-from pin_metaik.compare.methods.solvers import Default, Search
+from pin_metaik.compare.methods.solvers import Default, Rounds, Search
+from pin_metaik.errors import UnknownName
 from pin_metaik.ik import REFINERS
 from pin_metaik.optimize import ALGORITHMS
 
@@ -21,4 +22,22 @@ METHODS: dict[str, Method] = {
     **PEERS,
 }
 
-__all__ = ["METHODS", "Default", "Search"]
+ROUND = "@"  # as in gwo@120+dls: rounds of 120 evaluations
+
+
+def named(name: str) -> Method:
+    """A method by its name; of a hybrid the evaluations of a round may be given: ``gwo@120+dls``.
+
+    Raises:
+        UnknownName: There is none.
+    """
+    seeder, at, rest = name.partition(ROUND)
+    size, _, refiner = rest.partition("+")
+    if at and size.isdecimal() and seeder in ALGORITHMS and refiner in REFINEMENTS:
+        return Rounds(name, seeder, REFINEMENTS[refiner], int(size))
+    if name not in METHODS:
+        raise UnknownName("method", name, METHODS)
+    return METHODS[name]
+
+
+__all__ = ["METHODS", "Default", "Rounds", "Search", "named"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +13,11 @@ from pin_metaik.compare.cost import price_of, steps_within
 from pin_metaik.compare.method import Answer
 from pin_metaik.compare.methods.priced import Priced
 from pin_metaik.ik import IKProblem, IKResult, IKSolver, IKStatus, Refiner, solve_ik
+from pin_metaik.ik.ledger import Ledger
 from pin_metaik.ik.refine import make_refiner
-from pin_metaik.optimize import Budget, Metaheuristic
+from pin_metaik.ik.solver import ELITE
+from pin_metaik.optimize import Budget, Metaheuristic, Status, make, minimize
+from pin_metaik.optimize.settings import whole
 
 
 @dataclass(frozen=True)
@@ -62,6 +66,48 @@ class Default:
         chain = problem.chain
         found = answer(solve_ik(chain, problem.targets[0], chain.q(x0), solver=solver, rng=rng))
         return replace(found, evaluations=price_of(found.evaluations or 0))
+
+
+@dataclass(frozen=True)
+class Rounds:
+    """Short searches and refinements by turns: a metaheuristic spends a round, its best points are refined, and again.
+
+    ``Search`` gives a metaheuristic a quarter of what is left of the budget: much, where a refiner needs little.
+
+    Attributes:
+        name: What it is called.
+        seeder: A metaheuristic, by name or as an object.
+        refiner: A refiner, by name or as an object.
+        round: Kernel evaluations of one search.
+    """
+
+    name: str
+    seeder: str | Metaheuristic
+    refiner: str | Refiner
+    round: int
+
+    def __post_init__(self) -> None:
+        """Raises UnknownName or InvalidSetting where the names or the round enter."""
+        make(self.seeder)
+        make_refiner(self.refiner)
+        whole("round", self.round, 1)
+
+    def solve(self, problem: IKProblem, x0: NDArray[np.float64], budget: int, rng: np.random.Generator) -> Answer:
+        """Search within the budget."""
+        refiner = Priced(make_refiner(self.refiner))
+        ledger = Ledger(problem, Budget(evaluations=budget), perf_counter(), x0)
+        seeds: NDArray[np.float64] | None = x0[None]
+        while not ledger.over() and problem.gap == 0.0:
+            allowed = Budget(evaluations=min(self.round, ledger.left()), target=problem.good_enough)
+            found = minimize(problem.costs, problem.box, self.seeder, allowed, rng, seeds=seeds, keep=ELITE)
+            if found.status is Status.INTERRUPTED:
+                raise KeyboardInterrupt
+            ledger.add_search(found)
+            if not ledger.over():
+                ledger.add(refiner.refine(problem, found.elite, ledger.left()))
+            seeds = None
+        met = problem.accepts(problem.chain.q(ledger.x))
+        return Answer(ledger.x, met, ledger.spent, str(IKStatus.SOLVED if met else ledger.status))
 
 
 def answer(result: IKResult) -> Answer:
