@@ -62,8 +62,10 @@ class Default:
 
     def solve(self, problem: IKProblem, x0: NDArray[np.float64], budget: int, rng: np.random.Generator) -> Answer:
         """Solve within the budget."""
-        solver = IKSolver(budget=Budget(evaluations=max(1, steps_within(budget))), select=self.select)
-        chain = problem.chain
+        steps, chain = steps_within(budget), problem.chain
+        if steps == 0:
+            return Answer(x0, False, 0, str(IKStatus.OUT_OF_TOLERANCE))
+        solver = IKSolver(budget=Budget(evaluations=steps), select=self.select)
         found = answer(solve_ik(chain, problem.targets[0], chain.q(x0), solver=solver, rng=rng))
         return replace(found, evaluations=price_of(found.evaluations or 0))
 
