@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pin_metaik.compare.case import Case
 from pin_metaik.compare.report import figures
-from pin_metaik.compare.report.overview import SPENT, spent
+from pin_metaik.compare.report.overview import SPENT, in_words, spent
 from pin_metaik.compare.report.parts import Column, Figure, Section, Table, Value
 from pin_metaik.compare.results import Results, summarise
 from pin_metaik.compare.statistics import Pair, compare_all, friedman
@@ -26,7 +26,7 @@ def by_case(results: Results, case: Case) -> Section:
     text = (
         case.about,
         case.success,
-        f"Friedman's test over {test.blocks:,} tasks: chi squared = {test.statistic:.4g}, p = {test.p:.2g}.",
+        f"Friedman's test over {test.blocks:,} tasks: chi squared = {test.statistic:.4g}, {in_words(test.p)}.",
     )
     ranks = dict(zip(results.counted, test.ranks.tolist(), strict=True))
     rows: list[tuple[Value, ...]] = []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -32,18 +33,16 @@ def lines(methods: Sequence[str]) -> dict[str, Line]:
     ``gwo+dls`` and ``gwo`` have one colour, ``gwo+dls`` and ``mtde+dls`` one style; ``lm`` and ``lm+restarts`` differ
     in style, ``lm+restarts`` and ``dls+restarts`` in colour.
     """
-    first = dict.fromkeys(method.partition("+")[0] for method in methods)
-    second = dict.fromkeys(method.partition("+")[2] for method in methods)
-    colours = dict(zip(first, itertools.cycle(COLOURS), strict=False))
-    whole = sorted(second, key=lambda part: (part != "restarts", part == "", list(second).index(part)))
-    styles = dict(zip(whole, itertools.cycle(STYLES), strict=False))
-    return {method: Line(colours[method.partition("+")[0]], styles[method.partition("+")[2]]) for method in methods}
+    parts = {method: re.match(r"([^@+]*)(.*)", method).groups() for method in methods}  # type: ignore[union-attr]
+    colours = dict(zip(dict.fromkeys(first for first, _ in parts.values()), itertools.cycle(COLOURS), strict=False))
+    rest = sorted(dict.fromkeys(rest for _, rest in parts.values()), key=lambda rest: (rest != "+restarts", rest == ""))
+    styles = dict(zip(rest, itertools.cycle(STYLES), strict=False))
+    return {method: Line(colours[first], styles[rest]) for method, (first, rest) in parts.items()}
 
 
 def panels(canvas: Any, titles: Sequence[str], **shared: Any) -> dict[str, Any]:
-    """Axes by title, at most three in a row."""
-    columns = min(3, len(titles))
-    rows = -(-len(titles) // columns)
+    """Axes by title, in rows."""
+    columns, rows = _grid(len(titles))
     axes = canvas.subplots(rows, columns, squeeze=False, **shared).ravel()
     for ax in axes[len(titles) :]:
         ax.remove()
@@ -56,8 +55,14 @@ def panels(canvas: Any, titles: Sequence[str], **shared: Any) -> dict[str, Any]:
 
 def panel_size(count: int) -> tuple[float, float]:
     """Width and height in inches of a figure with so many panels and a legend below."""
-    columns = min(3, count)
-    return max(6.5, 3.6 * columns), 3.0 * -(-count // columns) + 0.9
+    columns, rows = _grid(count)
+    return 10.6 if columns > 1 else 6.5, (3.0 if columns == 3 else 3.4) * rows + 0.9
+
+
+def _grid(count: int) -> tuple[int, int]:
+    """Columns and rows of so many panels."""
+    columns = {1: 1, 2: 2, 4: 2}.get(count, 3)
+    return columns, -(-count // columns)
 
 
 def distributions(canvas: Any, shares: Mapping[str, Mapping[str, Array]], at: Array, what: str) -> None:

@@ -40,6 +40,11 @@ def interval(summary: Summary) -> str:
     return f"{100.0 * low:.1f} to {100.0 * high:.1f}"
 
 
+def in_words(p: float) -> str:
+    """A p-value; what is too small for a float is said to be so."""
+    return f"p = {p:.2g}" if p > 0.0 else "p < 1e-300"
+
+
 def overview(results: Results) -> Section:
     """How every method fared, over all robots and cases."""
     costs = np.concatenate([results.costs(case) for case in results.cases])
@@ -57,7 +62,7 @@ def overview(results: Results) -> Section:
     text = (
         "Evaluations are those of the solved trials, processor time that of all. The rank is by evaluations to "
         "solution on each task, 1 being the best; who did not solve it shares the last place.",
-        f"Friedman's test over {test.blocks:,} tasks: chi squared = {test.statistic:.4g}, p = {test.p:.2g}.",
+        f"Friedman's test over {test.blocks:,} tasks: chi squared = {test.statistic:.4g}, {in_words(test.p)}.",
     )
     return Section("In short", text, (table,), distributions(results))
 

@@ -30,16 +30,15 @@ def seeds_against_restarts(results: Results) -> Section | None:
     rows: list[tuple[Value, ...]] = []
     for case, pair in zip(where, pairs, strict=True):
         rates = [summarise(results.of(case=case, method=method)).rate for method in (pair.a, pair.b)]
-        rows.append((case, pair.a, pair.b, *rates, pair.better, pair.worse, pair.ratio, pair.adjusted, verdict(pair)))
+        rows.append((case, pair.a, *rates, pair.better, pair.worse, pair.ratio, pair.adjusted, verdict(pair)))
     columns = (
         Column("case"),
         Column("seeds"),
-        Column("restarts"),
         Column("seeds solved", ".1%"),
         Column("restarts solved", ".1%"),
         Column("seeds quicker on"),
         Column("restarts quicker on"),
-        Column("evaluations, seeds / restarts", ".3g"),
+        Column("evaluations, seeds / restarts", ",.1f"),
         Column("p, Holm", ".2g"),
         Column("better"),
     )
@@ -80,5 +79,5 @@ def sentence(where: Sequence[str], pairs: Sequence[Pair], rows: Sequence[tuple[V
 
 def _more(row: tuple[Value, ...]) -> bool:
     """Whether seeds solved more than restarts."""
-    seeds, restarts = row[3], row[4]
+    seeds, restarts = row[2], row[3]
     return isinstance(seeds, float) and isinstance(restarts, float) and seeds > restarts
