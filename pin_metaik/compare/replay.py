@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from pin_metaik.compare.case import Task
-from pin_metaik.compare.store import read_rows, read_suite
+from pin_metaik.compare.store import read_record, read_rows
 from pin_metaik.compare.suite import Unit
 from pin_metaik.compare.trial import Trial
 from pin_metaik.errors import InvalidSetting, UnknownName
@@ -68,7 +68,7 @@ def replay(folder: Path, name: str) -> Replay:
         InvalidSetting: The folder holds no comparison, or the name is none.
         UnknownName: The comparison has no such robot, case or method.
     """
-    suite = read_suite(folder)
+    suite = read_record(folder).suite()
     try:
         robot, case, target, method, seed = name.split("/")
         numbers = int(target), int(seed)

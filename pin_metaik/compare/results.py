@@ -9,9 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.compare.case import Case
+from pin_metaik.compare.record import CaseRecord, Record
 from pin_metaik.compare.statistics import wilson
-from pin_metaik.compare.suite import Suite
 from pin_metaik.compare.trial import Trial
 
 Array = NDArray[np.float64]
@@ -55,27 +54,27 @@ class Results:
     """A comparison's rows.
 
     Attributes:
-        suite: What was asked for.
+        record: What was asked for.
         trials: The rows that there are.
     """
 
-    suite: Suite
+    record: Record
     trials: Sequence[Trial]
 
     @property
     def robots(self) -> list[str]:
         """Names of the robots."""
-        return list(self.suite.arms)
+        return list(self.record.robots)
 
     @property
-    def cases(self) -> dict[str, Case]:
+    def cases(self) -> dict[str, CaseRecord]:
         """The cases by name."""
-        return self.suite.tasks
+        return self.record.cases
 
     @property
     def methods(self) -> list[str]:
         """Names of the methods."""
-        return list(self.suite.entrants)
+        return list(self.record.methods)
 
     @cached_property
     def counted(self) -> list[str]:
@@ -120,7 +119,7 @@ class Results:
     def _groups(self) -> dict[tuple[str, str, str], list[Trial]]:
         groups: dict[tuple[str, str, str], list[Trial]] = {}
         for trial in sorted(self.trials, key=lambda trial: (trial.target, trial.seed)):
-            if self.suite.holds(trial):
+            if self.record.holds(trial):
                 groups.setdefault((trial.robot, trial.case, trial.method), []).append(trial)
         return groups
 

@@ -14,7 +14,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from pin_metaik.compare import environment
-from pin_metaik.compare.store import Appender, need_parquet, open_suite, read_rows, write_parquet
+from pin_metaik.compare.record import Record
+from pin_metaik.compare.store import Appender, need_parquet, open_record, read_rows, write_parquet
 from pin_metaik.compare.suite import Suite, Unit
 from pin_metaik.compare.trial import Trial
 from pin_metaik.errors import InvalidSetting, MissingExtra
@@ -85,7 +86,7 @@ def compare(
     """
     need_parquet()
     began = perf_counter()
-    open_suite(folder, suite)
+    open_record(folder, Record.of(suite))
     environment.record(folder, command)
     rows = {trial.key: trial for trial in read_rows(folder)}
     before = len(rows)

@@ -8,12 +8,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from pin_metaik.compare.suite import Suite
+from pin_metaik.compare.record import Record
 from pin_metaik.compare.trial import Trial
 from pin_metaik.errors import InvalidSetting, MissingExtra
 
-ROWS, PARQUET, SUITE = "rows.jsonl", "rows.parquet", "suite.json"
-FIXED = ("budget", "rng")  # what the rows of a folder have in common
+ROWS, PARQUET, RECORD = "rows.jsonl", "rows.parquet", "suite.json"
 
 
 def need_parquet() -> None:
@@ -26,43 +25,28 @@ def need_parquet() -> None:
         raise MissingExtra("writing Parquet", "compare")
 
 
-def open_suite(folder: Path, suite: Suite) -> None:
+def open_record(folder: Path, record: Record) -> None:
     """Make the folder for a comparison, or go on with the one in it, which may have grown.
 
     Raises:
         InvalidSetting: The folder holds rows of another budget or seed, or of more than is asked for now.
     """
-    path = folder / SUITE
-    if path.exists():
-        there = json.loads(path.read_text(encoding="utf-8"))
-        asked = suite.to_json()
-        for name in FIXED:
-            if there[name] != asked[name]:
-                raise InvalidSetting(
-                    f"{folder} holds a comparison with --{name} {there[name]}, not {asked[name]}: "
-                    "repeat that, or choose another folder"
-                )
-        for name in ("robots", "cases", "methods"):
-            left_out = [word for word in there[name] if word not in asked[name]]
-            if left_out:
-                raise InvalidSetting(f"{folder} has rows of {name} {', '.join(left_out)}: name them, too, to go on")
-        for name in ("targets", "seeds"):
-            if asked[name] < there[name]:
-                raise InvalidSetting(f"{folder} holds a comparison with {there[name]} {name}: ask for as many, or more")
+    if (folder / RECORD).exists():
+        record.check_grown_from(read_record(folder), folder)
     folder.mkdir(parents=True, exist_ok=True)
-    replace_text(path, json.dumps(suite.to_json(), indent=2) + "\n")
+    replace_text(folder / RECORD, json.dumps(record.to_json(), indent=2) + "\n")
 
 
-def read_suite(folder: Path) -> Suite:
+def read_record(folder: Path) -> Record:
     """The comparison of a folder.
 
     Raises:
         InvalidSetting: The folder holds none.
     """
-    path = folder / SUITE
+    path = folder / RECORD
     if not path.exists():
         raise InvalidSetting(f"{folder} holds no comparison: make one with pin-metaik compare --out {folder}")
-    return Suite.from_json(json.loads(path.read_text(encoding="utf-8")))
+    return Record.from_json(json.loads(path.read_text(encoding="utf-8")))
 
 
 def read_rows(folder: Path) -> list[Trial]:

@@ -83,37 +83,6 @@ class Suite:
             if left:
                 yield Unit(robot, spec, case, target, tuple(left), self.budget, self.rng)
 
-    def holds(self, trial: Trial) -> bool:
-        """Whether a row is one of this comparison's."""
-        return (
-            trial.robot in self.arms
-            and trial.case in self.tasks
-            and trial.method in self.entrants
-            and trial.target < self.targets
-            and trial.seed < self.seeds
-        )
-
-    def to_json(self) -> dict[str, Any]:
-        """As plain values; a case or method that came as an object is known by its name."""
-        words = {
-            "cases": [case if isinstance(case, str) else case.name for case in self.cases],
-            "methods": [method if isinstance(method, str) else method.name for method in self.methods],
-        }
-        return {
-            "robots": list(self.robots),
-            **words,
-            "targets": self.targets,
-            "seeds": self.seeds,
-            "budget": self.budget,
-            "rng": self.rng,
-        }
-
-    @staticmethod
-    def from_json(values: dict[str, Any]) -> Suite:
-        """What ``to_json`` made."""
-        lists = {name: tuple(values[name]) for name in ("robots", "cases", "methods")}
-        return Suite(**{**values, **lists})
-
 
 @dataclass(frozen=True)
 class Unit:

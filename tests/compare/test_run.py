@@ -16,7 +16,8 @@ from pyarrow import parquet
 from pin_metaik.compare import METHODS as KNOWN
 from pin_metaik.compare import Suite, compare, replay
 from pin_metaik.compare.environment import read_environment
-from pin_metaik.compare.store import ROWS, read_rows, read_suite
+from pin_metaik.compare.record import Record
+from pin_metaik.compare.store import ROWS, read_record, read_rows
 from pin_metaik.compare.trial import generator
 from pin_metaik.errors import InvalidSetting, MetaIKError, MissingExtra, UnknownName
 from tests.compare.suites import IMPOSSIBLE, JUMPING, METHODS, SMALL, Interrupted, rows
@@ -129,7 +130,8 @@ def test_the_parquet_file_has_the_same_rows(whole: Path) -> None:
 
 
 def test_a_suite_and_its_environment_are_written_down(whole: Path) -> None:
-    assert read_suite(whole).to_json() == SMALL.to_json()
+    record = read_record(whole)
+    assert record == Record.of(SMALL) and record.suite() == SMALL
     (session,) = read_environment(whole)
     assert {"pin-metaik", "pin", "numpy", "numba", "scipy", "joblib"} <= session["packages"].keys()
     assert session["processor"] and session["cores"] >= 1 and session["date"].startswith("20")

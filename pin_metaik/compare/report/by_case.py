@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.compare.case import Case
+from pin_metaik.compare.record import CaseRecord
 from pin_metaik.compare.report import figures
 from pin_metaik.compare.report.overview import SPENT, in_words, spent
 from pin_metaik.compare.report.parts import Column, Figure, Section, Table, Value
@@ -18,7 +18,7 @@ from pin_metaik.compare.trial import CURVE
 Array = NDArray[np.float64]
 
 
-def by_case(results: Results, case: Case) -> Section:
+def by_case(results: Results, case: CaseRecord) -> Section:
     """All there is to know of one case."""
     costs = results.costs(case.name)
     test = friedman(costs)
@@ -106,7 +106,7 @@ def convergence(results: Results) -> Section | None:
         return None
 
     def draw(canvas: Any) -> None:
-        figures.convergence(canvas, curves, CURVE * results.suite.budget)
+        figures.convergence(canvas, curves, CURVE * results.record.budget)
 
     caption = "Median of the best cost so far over all targets and robots; the middle half of the trials is shaded."
     figure = Figure("convergence", caption, draw, figures.panel_size(len(curves)))

@@ -15,7 +15,7 @@ from pin_metaik.compare.report.seeds import seeds_against_restarts
 from pin_metaik.compare.report.worst import trouble, worst
 from pin_metaik.compare.report.write import need_figures, write
 from pin_metaik.compare.results import Results
-from pin_metaik.compare.store import read_rows, read_suite, replace_text
+from pin_metaik.compare.store import read_record, read_rows, replace_text
 from pin_metaik.errors import InvalidSetting
 
 TITLE = "Inverse kinematics where it is hard"
@@ -33,7 +33,7 @@ def report(folder: Path) -> list[Path]:
         MissingExtra: matplotlib is not installed.
     """
     need_figures()
-    results = Results(read_suite(folder), read_rows(folder))
+    results = Results(read_record(folder), read_rows(folder))
     if not results.trials:
         raise InvalidSetting(f"{folder} has no rows yet: run pin-metaik compare --out {folder}")
     sessions = read_environment(folder)

@@ -124,15 +124,15 @@ def winners(results: Results) -> Section:
 
 def reading(results: Results) -> Section:
     """What was compared and what the words mean."""
-    suite = results.suite
+    record = results.record
     sizes = (
         f"{len(results.methods)} methods on {len(results.cases)} cases and {len(results.robots)} robots "
-        f"({', '.join(results.robots)}), {suite.targets} targets each, "
-        f"{suite.seeds} {'seed' if suite.seeds == 1 else 'seeds'}: {len(results.trials):,} trials."
+        f"({', '.join(results.robots)}), {record.targets} targets each, "
+        f"{record.seeds} {'seed' if record.seeds == 1 else 'seeds'}: {len(results.trials):,} trials."
     )
     text: tuple[str, ...] = (
         sizes,
-        f"Every trial may spend {suite.budget:,} kernel evaluations on a target: forward kinematics count 1, forward "
+        f"Every trial may spend {record.budget:,} kernel evaluations on a target: forward kinematics count 1, forward "
         f"kinematics with a Jacobian {FK_WITH_JACOBIAN:g}, as measured. Who spends more has not solved it. All methods "
         "get the same targets and, in the same repetition, the same start.",
         "`lm` is Levenberg-Marquardt (Chan) from the given start alone, `lm+restarts` goes on from random ones; `dls` "
@@ -143,8 +143,8 @@ def reading(results: Results) -> Section:
     silent = [method for method in results.methods if method not in results.counted]
     if silent:
         text += (f"Not ranked, as they do not tell what they spend: {', '.join(silent)}.",)
-    if len(results.trials) < suite.trials:
-        text += (f"PARTIAL: {len(results.trials):,} of {suite.trials:,} trials are done.",)
+    if len(results.trials) < record.trials:
+        text += (f"PARTIAL: {len(results.trials):,} of {record.trials:,} trials are done.",)
     columns = (Column("case"), Column("targets"), Column("counts as solved"))
     rows: list[tuple[Value, ...]] = [(case.name, case.about, case.success) for case in results.cases.values()]
     return Section("What was compared", text, (Table("cases", "Cases", columns, rows),))
