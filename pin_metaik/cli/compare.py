@@ -12,10 +12,9 @@ import typer
 from rich.console import Console
 
 from pin_metaik.cli.many import split
-from pin_metaik.compare import CASES, Suite
+from pin_metaik.compare import CASES, Suite, write_report
 from pin_metaik.compare import compare as run
 from pin_metaik.compare import replay as again
-from pin_metaik.compare.report.comparison import report as write_report
 
 INTERRUPTED = 130  # what shells make of Ctrl-C
 

@@ -5,7 +5,10 @@ from pin_metaik.compare.cases import CASES
 from pin_metaik.compare.method import Answer, Method
 from pin_metaik.compare.methods import METHODS, Search
 from pin_metaik.compare.replay import Replay, replay
+from pin_metaik.compare.report.comparison import write_report
+from pin_metaik.compare.results import Results, Summary, summarise
 from pin_metaik.compare.run import Outcome, compare
+from pin_metaik.compare.store import read_results
 from pin_metaik.compare.suite import Suite
 from pin_metaik.compare.trial import Trial
 
@@ -18,10 +21,15 @@ __all__ = [
     "Method",
     "Outcome",
     "Replay",
+    "Results",
     "Search",
     "Suite",
+    "Summary",
     "Task",
     "Trial",
     "compare",
+    "read_results",
     "replay",
+    "summarise",
+    "write_report",
 ]

@@ -1,4 +1,7 @@
-"""The statistics of a comparison: intervals of rates, distributions of what was spent, and rank tests of methods."""
+"""The statistics of a comparison: intervals of rates, distributions of what was spent, and rank tests of methods.
+
+``scipy.stats`` is imported late: it takes a third of a second.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import stats
 
 Array = NDArray[np.float64]
 
@@ -19,6 +21,8 @@ def wilson(successes: int, trials: int) -> tuple[float, float]:
     """The 95 % interval of a rate (Wilson 1927): sound for few trials, and for rates of 0 and 1 too."""
     if trials == 0:
         return 0.0, 1.0
+    from scipy import stats
+
     interval = stats.binomtest(successes, trials).proportion_ci(CONFIDENCE, method="wilson")
     return float(interval.low), float(interval.high)
 
@@ -52,6 +56,8 @@ def friedman(costs: ArrayLike) -> Friedman:
 
     With less than three methods, or no differences at all, nothing can be shown: p is 1.
     """
+    from scipy import stats
+
     table = np.asarray(costs, dtype=float)
     b, k = table.shape
     ranks = stats.rankdata(table, axis=1) if b else np.full((1, k), (k + 1) / 2.0)
@@ -102,6 +108,8 @@ class Pair:
 
 def signed_rank(difference: ArrayLike) -> float:
     """Two-sided p-value of Wilcoxon's signed-rank test; tasks without a difference are left out, as he did."""
+    from scipy import stats
+
     d = np.asarray(difference, dtype=float)
     return float(stats.wilcoxon(d).pvalue) if (d != 0.0).any() else 1.0
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pin_metaik.compare.record import Record
+from pin_metaik.compare.results import Results
 from pin_metaik.compare.trial import Trial
 from pin_metaik.errors import InvalidSetting, MissingExtra
 
@@ -67,6 +68,15 @@ def read_rows(folder: Path) -> list[Trial]:
             raise InvalidSetting(f"line {number} of {path} is no row: take it out to go on") from None
         rows.setdefault(trial.key, trial)
     return list(rows.values())
+
+
+def read_results(folder: Path) -> Results:
+    """The comparison of a folder and its rows so far, for statistics.
+
+    Raises:
+        InvalidSetting: The folder holds none, or a line in the middle is no row.
+    """
+    return Results(read_record(folder), read_rows(folder))
 
 
 class Appender:

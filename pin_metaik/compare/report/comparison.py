@@ -15,14 +15,14 @@ from pin_metaik.compare.report.seeds import seeds_against_restarts
 from pin_metaik.compare.report.worst import trouble, worst
 from pin_metaik.compare.report.write import need_figures, write
 from pin_metaik.compare.results import Results
-from pin_metaik.compare.store import read_record, read_rows, replace_text
+from pin_metaik.compare.store import read_results, replace_text
 from pin_metaik.errors import InvalidSetting
 
 TITLE = "Inverse kinematics where it is hard"
 PAGE, STEM = "report.html", "report"
 
 
-def report(folder: Path) -> list[Path]:
+def write_report(folder: Path) -> list[Path]:
     """Write the report on the comparison in a folder, into its folder ``report``.
 
     Returns:
@@ -33,7 +33,7 @@ def report(folder: Path) -> list[Path]:
         MissingExtra: matplotlib is not installed.
     """
     need_figures()
-    results = Results(read_record(folder), read_rows(folder))
+    results = read_results(folder)
     if not results.trials:
         raise InvalidSetting(f"{folder} has no rows yet: run pin-metaik compare --out {folder}")
     sessions = read_environment(folder)

@@ -10,9 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from pin_metaik.compare import Suite, compare
+from pin_metaik.compare import Suite, compare, write_report
 from pin_metaik.compare.report import Column, Figure, Section, Table
-from pin_metaik.compare.report.comparison import report
 from pin_metaik.compare.report.html import html
 from tests.compare.suites import JUMPING
 
@@ -41,7 +40,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     compare(
         Suite(("ur5",), ("near_limit", "path"), methods, targets=8, budget=300), out, command="pin-metaik <&> compare"
     )
-    report(out)
+    write_report(out)
     return out
 
 
@@ -67,7 +66,7 @@ def test_the_page_needs_nothing_else_and_is_escaped(folder: Path) -> None:
 
 def test_the_same_rows_give_the_same_page(folder: Path) -> None:
     page = (folder / "report" / "report.html").read_bytes()
-    report(folder)
+    write_report(folder)
     assert (folder / "report" / "report.html").read_bytes() == page
 
 
