@@ -64,7 +64,8 @@ def sentence(where: Sequence[str], pairs: Sequence[Pair], rows: Sequence[tuple[V
     verdicts = [verdict(pair) for pair in pairs]
     seeds = [f"{pair.a} ({case})" for case, pair, who in zip(where, pairs, verdicts, strict=True) if who == "seeds"]
     ratios = [pair.ratio for pair, who in zip(pairs, verdicts, strict=True) if who == RESTARTS]
-    solved_more = [f"{pair.a} ({case})" for case, pair, row in zip(where, pairs, rows, strict=True) if _more(row)]
+    gains = [(pair.a, case, _gain(row)) for case, pair, row in zip(where, pairs, rows, strict=True)]
+    solved_more = [f"{method} ({case}, by {gain:.1f} points)" for method, case, gain in gains if gain > 0.0]
     parts = [
         f"At equal evaluations restarts are better in {len(ratios)} of {len(pairs)} comparisons, seeds in "
         f"{len(seeds)}, and in {verdicts.count('-')} nobody can tell."
@@ -77,7 +78,7 @@ def sentence(where: Sequence[str], pairs: Sequence[Pair], rows: Sequence[tuple[V
     return " ".join(parts)
 
 
-def _more(row: tuple[Value, ...]) -> bool:
-    """Whether seeds solved more than restarts."""
+def _gain(row: tuple[Value, ...]) -> float:
+    """How much more seeds solved than restarts, in percentage points."""
     seeds, restarts = row[2], row[3]
-    return isinstance(seeds, float) and isinstance(restarts, float) and seeds > restarts
+    return 100.0 * (seeds - restarts) if isinstance(seeds, float) and isinstance(restarts, float) else 0.0
