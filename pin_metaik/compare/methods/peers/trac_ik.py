@@ -29,4 +29,4 @@ def load(arm: SerialArm) -> Solve:
     return solve
 
 
-TRAC_IK = Peer("trac_ik", "pytracik", "peers", load)
+TRAC_IK = Peer("trac_ik", "pytracik", "tracik", load)
