@@ -84,7 +84,7 @@ def test_the_overview_ranks_and_counts(results: Results) -> None:
     assert columns["mean rank"] == [1.0, 2.0, 3.0]
     assert columns["solved"] == [1.0, 1.0, 39 / 40]
     assert columns["evaluations, median"][:2] == [29.5, 295.0]
-    assert columns["95 % interval"][2] == "87.1 to 99.6"  # Wilson, 39 of 40
+    assert columns["95 % interval"][2] == "87.1–99.6"  # Wilson, 39 of 40
     assert "40 tasks: chi squared = 80" in overview(results).text[1]  # 12 / (n k (k + 1)) sum R^2 - 3 n (k + 1)
 
 

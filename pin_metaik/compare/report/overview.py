@@ -35,9 +35,9 @@ def spent(summary: Summary) -> tuple[Value, ...]:
 
 
 def interval(summary: Summary) -> str:
-    """The 95 % interval of a rate, in percent."""
+    """The 95 % interval of a rate, in percent; one word, so that no table breaks it."""
     low, high = summary.interval
-    return f"{100.0 * low:.1f} to {100.0 * high:.1f}"
+    return f"{100.0 * low:.1f}–{100.0 * high:.1f}"
 
 
 def in_words(p: float) -> str:
