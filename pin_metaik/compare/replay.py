@@ -10,8 +10,8 @@ import numpy as np
 
 from pin_metaik.compare.case import Task
 from pin_metaik.compare.store import read_record, read_rows
-from pin_metaik.compare.suite import Unit
 from pin_metaik.compare.trial import Trial
+from pin_metaik.compare.unit import Unit
 from pin_metaik.errors import InvalidSetting, UnknownName
 
 

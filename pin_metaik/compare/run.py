@@ -16,8 +16,9 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from pin_metaik.compare import environment
 from pin_metaik.compare.record import Record
 from pin_metaik.compare.store import Appender, need_parquet, open_record, read_rows, write_parquet
-from pin_metaik.compare.suite import Suite, Unit
+from pin_metaik.compare.suite import Suite
 from pin_metaik.compare.trial import Trial
+from pin_metaik.compare.unit import Unit
 from pin_metaik.errors import InvalidSetting, MissingExtra
 
 Backend: TypeAlias = Literal["loky", "dask"]
