@@ -8,6 +8,7 @@ result = mik.solve_ik(chain, target)      # pin.SE3, 4x4, a position (3,) or a m
 result.success, result.q, result.status
 """
 
+from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import MetaIKError
 from pin_metaik.ik import (
     DLS,
@@ -41,6 +42,7 @@ __all__ = [
     "Box",
     "Budget",
     "Chain",
+    "CollisionWorld",
     "IKBatch",
     "IKPath",
     "IKProblem",

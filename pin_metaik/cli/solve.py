@@ -11,7 +11,8 @@ import typer
 from numpy.typing import NDArray
 from rich.console import Console
 
-from pin_metaik.errors import InvalidTarget
+from pin_metaik.collision import CollisionWorld, load_scene, scene_names
+from pin_metaik.errors import InvalidSetting, InvalidTarget
 from pin_metaik.ik import REFINERS, IKResult, IKSolver, Target, solve_ik
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.pose import rpy_matrix
@@ -34,6 +35,11 @@ def solve(
     seeder: Annotated[str, typer.Option(help=f"Where starts come from: {SEEDERS}.")] = "auto",
     refiner: Annotated[str, typer.Option(help=f"What refines them: {', '.join(REFINERS)} or none.")] = "dls",
     evaluations: Annotated[int, typer.Option(help="Forward kinematics that may be spent.")] = 50_000,
+    world: Annotated[
+        str | None,
+        typer.Option(help=f"Avoid collisions with itself and a scene (.toml, or one of: {', '.join(scene_names())})."),
+    ] = None,
+    margin: Annotated[float | None, typer.Option(help="Distance to keep from everything in the world, m.")] = None,
     rng: Annotated[int, typer.Option(min=0, help="Seed of every random choice.")] = 0,
     in_degrees: Annotated[bool, typer.Option("--degrees", help="Angles in degrees: --rpy and the printed q.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
@@ -41,6 +47,8 @@ def solve(
     """Solve for one target. Exit code 0: solved, 1: not solved, 2: the call makes no sense."""
     if position is None and rpy is None:
         raise InvalidTarget("nothing to reach: give --position X Y Z, --rpy R P Y, or both")
+    if margin is not None and world is None:
+        raise InvalidSetting("a margin is kept in a world: give --world, too")
     loaded = load_robot(robot)
     chain = Chain(loaded.model, frame or loaded.frame)
     solver = IKSolver(
@@ -48,7 +56,8 @@ def solve(
         None if refiner == "none" else refiner,
         Budget(evaluations=evaluations),
     )
-    result = solve_ik(chain, _target(position, rpy, in_degrees), solver=solver, rng=rng)
+    obstacles = None if world is None else CollisionWorld(loaded, load_scene(world), margin or 0.0)
+    result = solve_ik(chain, _target(position, rpy, in_degrees), solver=solver, world=obstacles, rng=rng)
     if as_json:
         print(json.dumps(report(loaded.name, chain, result, in_degrees), allow_nan=False))
     else:
@@ -81,6 +90,7 @@ def report(robot: str, chain: Chain, result: IKResult, in_degrees: bool) -> dict
         "joints": dict(zip(chain.names, _shown(chain, result.x, in_degrees), strict=True)),
         "position_error": result.position_error,
         "orientation_error": result.orientation_error,
+        "collisions": [contact._asdict() for contact in result.contacts],
         "evaluations": result.evaluations,
         "seconds": result.seconds,
     }

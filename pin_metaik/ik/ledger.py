@@ -87,5 +87,10 @@ class Ledger:
     def _elapsed(self) -> float:
         return perf_counter() - self._began
 
+    @property
+    def late(self) -> bool:
+        """Whether time is up."""
+        return self._late()
+
     def _late(self, share: float = 1.0) -> bool:
         return self._budget.seconds is not None and self._elapsed() >= share * self._budget.seconds

@@ -13,6 +13,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidSetting, InvalidTarget
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.solutions import gather
@@ -66,6 +67,7 @@ def solve_ik_path(
     q0: ArrayLike | None = None,
     *,
     max_step: float | ArrayLike = 0.2,
+    world: CollisionWorld | None = None,
     rng: Rng = None,
 ) -> IKPath:
     """Follow a sequence of poses without jumps.
@@ -75,6 +77,7 @@ def solve_ik_path(
         targets: k targets, as for ``solve_ik``; close enough to each other for the step bound.
         q0: (nq,) configuration the path should start near; default: wherever the path as a whole is best.
         max_step: Largest step of a joint from one pose to the next, rad or m: one number, or (n,) one a joint.
+        world: What must not collide at any of the poses; the steps between them are not looked at.
         rng: Seed or generator; ``None`` is a fixed seed.
 
     Returns:
@@ -82,7 +85,7 @@ def solve_ik_path(
 
     Raises:
         InvalidTarget: If there are no targets, or one of them is none.
-        InvalidSetting: If ``max_step`` is not above zero.
+        InvalidSetting: If ``max_step`` is not above zero, or the world is another model's than the chain.
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
     """
     began = perf_counter()
@@ -92,8 +95,8 @@ def solve_ik_path(
     if not (bound > 0.0).all():
         raise InvalidSetting(f"max_step is above 0, got {bound}")
     base = chain.reference if q0 is None else chain.configuration(q0)
-    problems = [IKProblem.of(chain, target) for target in targets]
-    layers = _layers(problems, chain.x(base), q0 is not None, rng)
+    problems = [IKProblem.of(chain, target, world) for target in targets]
+    layers = _layers(problems, base, q0 is not None, rng)
     x, breaks = _best_way(chain, layers, bound, None if q0 is None else chain.x(base))
     q = chain.q(x, base)
     success = np.array([problem.accepts(one) for problem, one in zip(problems, q, strict=True)])
@@ -102,31 +105,42 @@ def solve_ik_path(
     return IKPath(q, success, tuple(breaks), float(steps.max(initial=0.0)), perf_counter() - began, chain)
 
 
-def _layers(problems: list[IKProblem], x0: NDArray[np.float64], near: bool, rng: Rng) -> list[NDArray[np.float64]]:
-    """Solutions (s, n) of every pose; empty where none was found."""
+def _layers(problems: list[IKProblem], base: NDArray[np.float64], near: bool, rng: Rng) -> list[NDArray[np.float64]]:
+    """Solutions (s, n) of every pose, the joints off the chain being as in base (nq,); empty where none was found."""
     layers: list[NDArray[np.float64]] = []
+    x0 = problems[0].chain.x(base)
     followed = x0[None] if near else np.empty((0, len(x0)))
     for index, problem in enumerate(problems):
         fresh = np.concatenate([problem.near(FRESH), drawn(problem.chain, rng, index, FRESH)])
-        layer = _widened(problem, np.empty((0, len(x0))), followed, followed=True)
-        layer = _widened(problem, layer, fresh)
+        layer = _widened(problem, base, np.empty((0, len(x0))), followed, followed=True)
+        layer = _widened(problem, base, layer, fresh)
         layers.append(layer)
         followed = layer if len(layer) else followed
     for i in range(len(problems) - 2, -1, -1):  # what only a later pose found may have begun earlier
-        layers[i] = _widened(problems[i], layers[i], layers[i + 1], followed=True)
+        layers[i] = _widened(problems[i], base, layers[i], layers[i + 1], followed=True)
     return layers
 
 
 def _widened(
-    problem: IKProblem, layer: NDArray[np.float64], starts: NDArray[np.float64], followed: bool = False
+    problem: IKProblem,
+    base: NDArray[np.float64],
+    layer: NDArray[np.float64],
+    starts: NDArray[np.float64],
+    followed: bool = False,
 ) -> NDArray[np.float64]:
-    """A layer with the solutions that these starts lead to; those found afresh must leave room for followed ones."""
+    """A layer with the solutions that these starts lead to; those found afresh must leave room for followed ones.
+
+    In a world only what is free of collisions is added.
+    """
     room = WIDEST if followed else WIDEST // 2
     if len(layer) >= room or not len(starts):
         return layer
     found = np.empty((room, problem.chain.n))
     found[: len(layer)] = layer
     _, known, _ = gather(problem, starts, found, len(layer), APART, len(starts) + 1, EVALUATIONS, branch=False)
+    if problem.world is not None:
+        clear = [problem.accepts(q) for q in problem.chain.q(found[len(layer) : known], base)]
+        return np.concatenate([layer, found[len(layer) : known][clear]])
     return found[:known]
 
 

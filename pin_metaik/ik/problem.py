@@ -12,49 +12,64 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from pin_metaik.errors import FrameNotFound, InvalidTarget
+from pin_metaik.collision import CollisionWorld
+from pin_metaik.errors import FrameNotFound, InvalidSetting, InvalidTarget
 from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import Chain, Limits
 from pin_metaik.optimize import Box
 
 
 class Verdict(NamedTuple):
-    """What Pinocchio says of a configuration: the worst frame's errors (m, rad), and whether all is as asked."""
+    """What Pinocchio and coal say of a configuration.
+
+    Attributes:
+        position_error: Of the worst frame, m.
+        orientation_error: Of the worst frame, rad.
+        accepted: Whether all is as asked.
+        collides: Whether nothing is wrong but that it is in collision.
+    """
 
     position_error: float
     orientation_error: float
     accepted: bool
+    collides: bool = False
 
 
 @dataclass(frozen=True, eq=False)
 class IKProblem:
-    """Targets for the frames of a chain, inside limits.
+    """Targets for the frames of a chain, inside limits, and perhaps in a world full of obstacles.
 
     Attributes:
         chain: The chain.
         targets: One for each of its frames, in the chain's order.
         tasks: (T, 26) the targets as the kernels take them.
         rows: (m, 2) the (frame, axis) pairs that count: three translations, three rotations, less the free ones.
+        world: What must not collide; ``None``: nothing is checked.
     """
 
     chain: Chain
     targets: tuple[Target, ...]
     tasks: NDArray[np.float64]
     rows: NDArray[np.int64]
+    world: CollisionWorld | None = None
 
     @staticmethod
-    def of(chain: Chain, target: TargetLike | Sequence[TargetLike]) -> IKProblem:
+    def of(chain: Chain, target: TargetLike | Sequence[TargetLike], world: CollisionWorld | None = None) -> IKProblem:
         """Match what somebody asks for to the chain's frames.
 
         Args:
             chain: The chain.
             target: A target for its only frame, or a list with one for each frame: in the chain's order, or each
                 naming its frame.
+            world: What must not collide.
 
         Raises:
             InvalidTarget: If a target is none, or a frame has none, or more than one.
             FrameNotFound: If a target names a frame that is not the chain's.
+            InvalidSetting: If the world's model is not the chain's.
         """
+        if world is not None and world.model is not chain.model and world.model != chain.model:
+            raise InvalidSetting(f"the world is of {world.model.name!r}, not of the chain's model {chain.model.name!r}")
         several = len(chain.frames) > 1 or (
             isinstance(target, (list, tuple)) and any(isinstance(one, (Target, pin.SE3)) for one in target)
         )
@@ -67,7 +82,7 @@ class IKProblem:
         if several or targets[0].frame is not None:
             targets = _match(chain.frames, targets)
         tasks = targets[0].task[None] if len(targets) == 1 else np.array([one.task for one in targets])
-        return IKProblem(chain, targets, tasks, _rows(tuple([one.counts for one in targets])))
+        return IKProblem(chain, targets, tasks, _rows(tuple([one.counts for one in targets])), world)
 
     @property
     def limits(self) -> Limits:
@@ -114,7 +129,7 @@ class IKProblem:
         return out
 
     def verdict(self, q: NDArray[np.float64]) -> Verdict:
-        """Judge a configuration q (nq,) with Pinocchio's forward kinematics and the limits."""
+        """Judge a configuration q (nq,) with Pinocchio's forward kinematics, the limits, and coal."""
         position = orientation = 0.0
         accepted = self.chain.limits.contains(self.chain.x(q))
         for target, placement in zip(self.targets, self.chain.placements(q), strict=True):
@@ -122,7 +137,8 @@ class IKProblem:
             position = max(position, judged.position_error)
             orientation = max(orientation, judged.orientation_error)
             accepted = accepted and judged.met
-        return Verdict(position, orientation, accepted)
+        collides = accepted and self.world is not None and self.world.checker.collides(q)
+        return Verdict(position, orientation, accepted and not collides, collides)
 
     def accepts(self, q: NDArray[np.float64]) -> bool:
         """Whether q (nq,) is a solution."""

@@ -9,6 +9,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.dexterity import rank
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.target import TargetLike
@@ -21,7 +22,7 @@ class IKStatus(StrEnum):
     """Why a search ended; only ``SOLVED`` is a success."""
 
     SOLVED = "SOLVED"
-    """Within the tolerances and inside the limits, by Pinocchio."""
+    """Within the tolerances and inside the limits, by Pinocchio; in a world also free of collisions, by coal."""
     UNREACHABLE = "UNREACHABLE"
     """Proved out of reach: farther from, or nearer to, a joint than the links between can span."""
     OUT_OF_TOLERANCE = "OUT_OF_TOLERANCE"
@@ -46,6 +47,8 @@ class IKResult:
         chain: The chain that was asked for ...
         target: ... what.
         trace: (g, 2) evaluations and best cost after each generation of the seeder, when asked for.
+        world: The world it must not collide in, if one was given.
+        contacts: What collides at ``q``, the deepest first, when the status is ``IN_COLLISION``.
     """
 
     q: NDArray[np.float64]
@@ -57,11 +60,13 @@ class IKResult:
     chain: Chain = field(repr=False)
     target: TargetLike | Sequence[TargetLike] = field(repr=False)
     trace: NDArray[np.float64] | None = field(default=None, repr=False)
+    world: CollisionWorld | None = field(default=None, repr=False)
+    contacts: tuple[Contact, ...] = ()
 
     @property
     def problem(self) -> IKProblem:
         """What was asked."""
-        return IKProblem.of(self.chain, self.target)
+        return IKProblem.of(self.chain, self.target, self.world)
 
     @property
     def success(self) -> bool:
@@ -100,12 +105,13 @@ class IKResult:
                 spent = f"nothing close enough found in {self.evaluations} evaluations"
                 return f"{spent}; this is the nearest{stuck}{lost}"
             case IKStatus.IN_COLLISION:
-                return "met only in collision"
+                shown = "; ".join(map(str, self.contacts[:3])) + ("; ..." if len(self.contacts) > 3 else "")
+                return f"met only in collision; the least deep found: {shown}"
             case IKStatus.STOPPED:
                 return "stopped before it was solved; this is the best so far"
 
     def verify(self) -> bool:
-        """Judge ``q`` again by Pinocchio and the limits."""
+        """Judge ``q`` again by Pinocchio and the limits, and by coal in the world as it is now."""
         return self.problem.accepts(self.q)
 
     def __str__(self) -> str:

@@ -10,6 +10,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.dls import DLS, PROGRESS
@@ -30,7 +31,7 @@ class IKSolutions:
     """Distinct solutions of one problem, the nearest to the start first.
 
     Attributes:
-        q: (s, nq) configurations, each judged by Pinocchio.
+        q: (s, nq) configurations, each judged by Pinocchio, and in a world by coal.
         complete: Whether the search ended because nothing new appeared. A chain with more joints than its target needs
             has endlessly many solutions: then this is a sample, and False.
         evaluations: Forward kinematics computed.
@@ -64,6 +65,7 @@ def solve_ik_all(
     limit: int = 64,
     apart: float = 1e-2,
     budget: Budget = DEFAULT_BUDGET,
+    world: CollisionWorld | None = None,
     rng: Rng = None,
 ) -> IKSolutions:
     """Find all distinct solutions of a target, until no new one appears.
@@ -78,12 +80,13 @@ def solve_ik_all(
         limit: Solutions to stop at; what ends the search on redundant chains.
         apart: rad or m by which some coordinate of two solutions must differ.
         budget: Evaluations (and seconds, which are not reproducible) that may be spent.
+        world: What must not collide: solutions that do are left out, after they have counted towards the limit.
         rng: Seed or generator; ``None`` is a fixed seed.
 
     Raises:
         InvalidTarget: If the target is not a pose, position or orientation.
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
-        InvalidSetting: If ``limit`` or ``apart`` is not above zero.
+        InvalidSetting: If ``limit`` or ``apart`` is not above zero, or the world is another model's than the chain.
         InvalidBudget: If the budget has no limit on evaluations.
     """
     if limit < 1 or not apart > 0.0:
@@ -91,14 +94,14 @@ def solve_ik_all(
     if budget.evaluations is None:
         raise InvalidBudget("collecting solutions needs a budget of evaluations: Budget(evaluations=...)")
     began = perf_counter()
-    problem = IKProblem.of(chain, target)
+    problem = IKProblem.of(chain, target, world)
     base = chain.reference if q0 is None else chain.configuration(q0)
     x0 = chain.x(base)
     found, complete, spent = collect(problem, x0, rng, limit=limit, apart=apart, budget=budget)
     found = chain.limits.nearest_turns(found, x0)
     found = found[np.argsort(np.linalg.norm(found - x0, axis=1), kind="stable")]
     q = chain.q(found, base)
-    judged = [problem.accepts(one) for one in q]
+    judged = np.array([problem.accepts(one) for one in q], dtype=bool)
     return IKSolutions(q[judged], complete, spent, perf_counter() - began, problem)
 
 

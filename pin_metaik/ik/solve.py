@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 from numpy.typing import ArrayLike
 
+from pin_metaik.collision import CollisionWorld
+from pin_metaik.ik.avoid import keep_clear
 from pin_metaik.ik.fast import solve_fast
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.result import IKResult
@@ -21,6 +23,7 @@ def solve_ik(
     q0: ArrayLike | None = None,
     *,
     solver: IKSolver | None = None,
+    world: CollisionWorld | None = None,
     rng: Rng = None,
 ) -> IKResult:
     """Find a configuration that places the chain's frames where they shall be.
@@ -32,6 +35,9 @@ def solve_ik(
         q0: (nq,) configuration to start from; joints outside the chain stay as they are in it. Default: the chain's
             reference.
         solver: How to search; default ``IKSolver()``.
+        world: What must not collide: the robot with itself, with what it holds, and with obstacles. Where the
+            solver's solution does, others are searched for, by damped least squares whatever its refiner, then by
+            pushing them out of collision, and by the solver's seeder.
         rng: Seed or generator of every random choice; ``None`` is a fixed seed, so that the same call gives the same
             answer.
 
@@ -42,8 +48,14 @@ def solve_ik(
         InvalidTarget: If the target is not a pose, position or orientation.
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
         InvalidBounds: If a joint of the chain has no finite range to search in.
+        InvalidSetting: If the world is another model's than the chain.
     """
-    return solve_one(chain, target, q0, solver or DEFAULT_SOLVER, rng)
+    solver = solver or DEFAULT_SOLVER
+    if world is None:
+        return solve_one(chain, target, q0, solver, rng)
+    if solver.select == "first":
+        return keep_clear(solve_one(chain, target, q0, solver, rng), q0, solver, world, rng)
+    return keep_clear(solver.solve(IKProblem.of(chain, target, world), q0, rng), q0, solver, world, rng)
 
 
 def solve_one(

@@ -95,7 +95,7 @@ class IKSolver:
             ledger.add(first)
         try:
             if self.select != "first":
-                self._choose(problem, x0, rng, ledger)
+                self._choose(problem, x0, base, rng, ledger)
             if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
                 self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
             if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
@@ -107,9 +107,10 @@ class IKSolver:
         q = base.copy()
         chain.coordinates.write(ledger.x, q)
         verdict = problem.verdict(q)
+        status = IKStatus.IN_COLLISION if verdict.collides else ledger.status
         return IKResult(
             q=q,
-            status=IKStatus.SOLVED if verdict.accepted else ledger.status,
+            status=IKStatus.SOLVED if verdict.accepted else status,
             position_error=verdict.position_error,
             orientation_error=verdict.orientation_error,
             evaluations=ledger.spent,
@@ -117,18 +118,29 @@ class IKSolver:
             chain=chain,
             target=problem.targets,
             trace=np.concatenate(ledger.traces) if ledger.traces else None,
+            world=problem.world,
+            contacts=problem.world.checker.contacts(q) if verdict.collides and problem.world else (),
         )
 
-    def _choose(self, problem: IKProblem, x0: NDArray[np.float64], rng: Rng, ledger: Ledger) -> None:
-        """Collect distinct solutions and take the best by the chosen measure; on a redundant chain, improve it."""
+    def _choose(
+        self, problem: IKProblem, x0: NDArray[np.float64], base: NDArray[np.float64], rng: Rng, ledger: Ledger
+    ) -> None:
+        """Collect distinct solutions and take the best by the chosen measure; on a redundant chain, improve it.
+
+        In a world only those count that are free of collisions, and what would improve one into a collision is left.
+        """
         measure = SELECT[self.select]
         budget = Budget(evaluations=max(1, ledger.left(CHOICE_SHARE)), seconds=self.budget.seconds)
         found, _, spent = collect(problem, x0, rng, limit=CHOICE, apart=1e-2, budget=budget)
         ledger.spent += spent
+        if problem.world is not None:
+            found = found[[problem.accepts(q) for q in problem.chain.q(found, base)]]
         if len(found):
             found = problem.limits.nearest_turns(found, x0)
             best = found[np.argmin(measure(problem, found, x0))]
-            ledger.x, ledger.met = slide(problem, best, x0, measure), True
+            better = slide(problem, best, x0, measure)
+            kept = problem.world is None or problem.accepts(problem.chain.q(better, base))
+            ledger.x, ledger.met = better if kept else best, True
 
     @cached_property
     def fast(self) -> DLS | None:

@@ -1,0 +1,27 @@
+"""Collisions: shapes, scenes, and the world that checks them through Pinocchio and coal."""
+
+from pin_metaik.collision.contact import Contact, Distance
+from pin_metaik.collision.mesh import Mesh, MeshSize
+from pin_metaik.collision.obstacle import Obstacle
+from pin_metaik.collision.scene import load_scene, scene_names
+from pin_metaik.collision.shapes import Box, Capsule, Cone, Cylinder, HalfSpace, Plane, Shape, Sphere
+from pin_metaik.collision.world import CollisionWorld
+
+__all__ = [
+    "Box",
+    "Capsule",
+    "CollisionWorld",
+    "Cone",
+    "Contact",
+    "Cylinder",
+    "Distance",
+    "HalfSpace",
+    "Mesh",
+    "MeshSize",
+    "Obstacle",
+    "Plane",
+    "Shape",
+    "Sphere",
+    "load_scene",
+    "scene_names",
+]

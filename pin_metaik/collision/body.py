@@ -1,0 +1,64 @@
+"""Bodies: the pieces of geometry that a world checks against each other, of the robot, grasped, or standing around."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+
+import numpy as np
+import pinocchio as pin
+
+from pin_metaik.collision.simplify import Simplify, Solid, solid_of
+from pin_metaik.errors import InvalidGeometry
+from pin_metaik.robots import Robot
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A solid that a joint carries, or that stands in the world (joint 0).
+
+    Attributes:
+        link: Name of the link, obstacle or grasped object it belongs to.
+        joint: Id of the joint that carries it.
+        placement: In that joint's frame.
+        solid: Its geometry.
+        part: Whether it is a part of the robot, as opposed to an obstacle or a grasped object.
+    """
+
+    link: str
+    joint: int
+    placement: pin.SE3
+    solid: Solid
+    part: bool = False
+
+
+def robot_bodies(robot: Robot, simplify: Simplify) -> tuple[Body, ...]:
+    """The pieces of a robot's collision geometry.
+
+    Raises:
+        InvalidGeometry: If it has none: then nothing it does could be called free of collisions.
+        InvalidModel: If a mesh is missing or unreadable.
+    """
+    pieces = list(robot.collision_model.geometryObjects)
+    if not pieces:
+        raise InvalidGeometry(f"{robot.name} has no collision geometry: nothing to check")
+    return tuple(
+        Body(
+            robot.model.frames[piece.parentFrame].name,
+            int(piece.parentJoint),
+            pin.SE3(piece.placement),
+            solid_of(piece.geometry, simplify),
+            part=True,
+        )
+        for piece in pieces
+    )
+
+
+def digest(model: pin.Model, bodies: tuple[Body, ...]) -> bytes:
+    """What decides which bodies of a robot touch: its joints, limits and hulls."""
+    content = hashlib.sha256(model.saveToString().encode())
+    for body in bodies:
+        content.update(f"{body.link} {body.joint}".encode() + body.placement.homogeneous.tobytes())
+        hull = body.solid.hull
+        content.update(np.array(hull.points()).tobytes() if hasattr(hull, "points") else hull.saveToString().encode())
+    return content.digest()

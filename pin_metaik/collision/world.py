@@ -1,0 +1,287 @@
+"""The world a robot moves in: its own links, what it holds, and what stands around, checked by coal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import ArrayLike, NDArray
+
+from pin_metaik.collision.body import Body, robot_bodies
+from pin_metaik.collision.checker import Checker
+from pin_metaik.collision.contact import Contact, Distance
+from pin_metaik.collision.layout import lay_out, moved
+from pin_metaik.collision.obstacle import Obstacle, placement
+from pin_metaik.collision.pairs import Srdf, disabled_pairs
+from pin_metaik.collision.shapes import Shape
+from pin_metaik.collision.simplify import Simplify, solid_of
+from pin_metaik.collision.srdf import Pair, pair_of, write_srdf
+from pin_metaik.errors import FrameNotFound, InvalidGeometry, InvalidSetting, UnknownName
+from pin_metaik.kinematics.chain import as_configuration
+from pin_metaik.robots import Robot
+
+
+class CollisionWorld:
+    """Collisions of a robot with itself, with obstacles, and of what it has grasped with both.
+
+    Changing it (add, move, remove, attach, detach, allow, check) is not for several threads at once; asking it is.
+
+    Attributes:
+        robot: The robot.
+        model: Its model, which configurations are of.
+        margin: Distance at or below which two bodies collide, m.
+        simplify: What is checked first.
+        exact: Whether the original geometry confirms what the simplified one finds.
+        obstacles: What stands in the world.
+        grasped: What the robot holds: an obstacle, posed in the frame whose name comes with it.
+        disabled: The pairs that are not checked, with the reason.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        obstacles: Iterable[Obstacle] = (),
+        margin: float = 0.0,
+        srdf: Srdf = None,
+        *,
+        simplify: Simplify = "convex",
+        exact: bool = True,
+    ) -> None:
+        """Load the robot's geometry, find out which links ever touch, and put up the obstacles.
+
+        Args:
+            robot: A robot with collision geometry.
+            obstacles: What stands in the world; more can be added later.
+            margin: Distance at or below which two bodies collide, m. Links that are mostly nearer to each other are
+                built so, and only kept from touching.
+            srdf: A file with the pairs of links not to check; default: the robot's own, if it has one; ``False``: none.
+                Neighbours, links that always touch and links that never do are found out either way.
+            simplify: ``"convex"`` hulls or ``"capsule"``s are checked before the original geometry, or ``"none"``.
+            exact: Ask the original geometry where simplified solids touch. Without it they decide, which is a little
+                quicker, and calls some configurations collisions that are none.
+
+        Raises:
+            InvalidGeometry: If the robot has no geometry, or two obstacles have one name.
+            InvalidModel: If a mesh of the robot or the SRDF cannot be read.
+            InvalidSetting: If the margin is negative or not finite.
+            UnknownName: If the SRDF or an obstacle names something that does not exist, or ``simplify`` is no level.
+        """
+        if not 0.0 <= margin < math.inf:
+            raise InvalidSetting(f"margin is a finite distance of at least 0 m, got {margin!r}")
+        if simplify not in get_args(Simplify):
+            raise UnknownName("simplification", str(simplify), get_args(Simplify))
+        self.robot, self.model, self.margin = robot, robot.model, float(margin)
+        self.simplify, self.exact = simplify, exact
+        self._links = robot_bodies(robot, simplify)
+        self.disabled = disabled_pairs(robot, self._links, srdf, self.margin)
+        self.obstacles: tuple[Obstacle, ...] = ()
+        self.grasped: tuple[tuple[Obstacle, str], ...] = ()
+        self._others: dict[str, Body] = {}
+        self._checker: Checker | None = None
+        for obstacle in obstacles:
+            self._enter(obstacle, 0, obstacle.pose)
+            self.obstacles = (*self.obstacles, obstacle)
+        for obstacle in self.obstacles:
+            self._permit(obstacle.name, obstacle.touching)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Links with geometry, obstacles and grasped objects."""
+        return (*dict.fromkeys(body.link for body in self._links), *self._others)
+
+    @property
+    def pairs(self) -> dict[Pair, str]:
+        """Every pair of names, with the reason why it is not checked; empty where it is."""
+        names = sorted(self.names)
+        every = (pair_of(a, b) for i, a in enumerate(names) for b in names[:i])
+        return {pair: self.disabled.get(pair, "") for pair in every}
+
+    def add(self, obstacle: Obstacle) -> None:
+        """Put up an obstacle.
+
+        Raises:
+            InvalidGeometry: If its name is taken.
+            UnknownName: If it may touch something that does not exist.
+        """
+        self._enter(obstacle, 0, obstacle.pose)
+        self.obstacles = (*self.obstacles, obstacle)
+        self._permit(obstacle.name, obstacle.touching)
+
+    def move(self, name: str, pose: pin.SE3 | ArrayLike) -> None:
+        """Put an obstacle somewhere else.
+
+        Raises:
+            UnknownName: If there is no such obstacle.
+            InvalidGeometry: If the pose is not finite and orthonormal.
+        """
+        known = [obstacle.name for obstacle in self.obstacles]
+        if name not in known:
+            raise UnknownName("obstacle", name, known)
+        there = placement(name, pose)
+        self._others[name] = replace(self._others[name], placement=there)
+        self.obstacles = tuple(replace(o, pose=there) if o.name == name else o for o in self.obstacles)
+        if self._checker is not None:
+            number = [body.link for body in self._checker.bodies].index(name)
+            self._checker = moved(self._checker, number, there, self._allowed)
+
+    def remove(self, name: str) -> None:
+        """Take away an obstacle or a grasped object.
+
+        Raises:
+            UnknownName: If there is none of that name.
+        """
+        if name not in self._others:
+            raise UnknownName("obstacle", name, self._others)
+        del self._others[name]
+        self.obstacles = tuple(o for o in self.obstacles if o.name != name)
+        self.grasped = tuple((o, frame) for o, frame in self.grasped if o.name != name)
+        self.disabled = {pair: reason for pair, reason in self.disabled.items() if name not in pair}
+        self._checker = None
+
+    def attach(
+        self,
+        name: str,
+        shape: Shape,
+        frame: str,
+        pose: pin.SE3 | ArrayLike = (0.0, 0.0, 0.0),
+        touching: Iterable[str] | None = None,
+    ) -> None:
+        """Grasp an object: from now on it moves with a frame, and must not collide either.
+
+        Args:
+            name: What to call it.
+            shape: Its shape.
+            frame: The frame that holds it.
+            pose: Where the object is in that frame.
+            touching: Names of links and obstacles that may touch it; default: what moves on the frame's own link, such
+                as fingers. Links that are fixed to the frame may touch it in any case.
+
+        Raises:
+            FrameNotFound: If the model has no such frame.
+            InvalidGeometry: If the name is taken, the shape is none or the pose is not finite and orthonormal.
+            UnknownName: If it may touch something that does not exist.
+        """
+        if not self.model.existFrame(frame):
+            raise FrameNotFound(frame, {f.name for f in self.model.frames} - {"universe"})
+        holder = self.model.frames[self.model.getFrameId(frame)]
+        fingers = [b.link for b in self._links if b.joint and self.model.parents[b.joint] == holder.parentJoint]
+        held = Obstacle(name, shape, pose, tuple(fingers if touching is None else touching))
+        self._enter(held, int(holder.parentJoint), holder.placement * held.pose)
+        self.grasped = (*self.grasped, (held, frame))
+        self._permit(name, held.touching)
+
+    def detach(self, name: str, q: ArrayLike) -> None:
+        """Let go of a grasped object: it stays, as an obstacle, where it is at configuration q (nq,).
+
+        Raises:
+            UnknownName: If nothing of that name is grasped.
+            InvalidConfiguration: If q is not a configuration of the model.
+        """
+        held = {obstacle.name: obstacle for obstacle, _ in self.grasped}
+        if name not in held:
+            raise UnknownName("grasped object", name, held)
+        data, body = self.model.createData(), self._others[name]
+        pin.forwardKinematics(self.model, data, as_configuration(self.model, q))
+        self.remove(name)
+        self.add(replace(held[name], pose=data.oMi[body.joint] * body.placement))
+
+    def allow(self, first: str, second: str, reason: str = "User") -> None:
+        """Do not check a pair any longer.
+
+        Raises:
+            UnknownName: If a name is neither a link with geometry, an obstacle nor a grasped object.
+        """
+        self.disabled[self._pair(first, second)] = reason
+        self._checker = None
+
+    def check(self, first: str, second: str) -> None:
+        """Check a pair that was not checked.
+
+        Raises:
+            UnknownName: If a name is neither a link with geometry, an obstacle nor a grasped object.
+        """
+        self.disabled.pop(self._pair(first, second), None)
+        self._checker = None
+
+    def write_srdf(self, path: str | Path) -> None:
+        """Write the pairs of links that are not checked as SRDF: to be read, changed and given back as ``srdf``."""
+        links = {body.link for body in self._links}
+        mine = {pair: reason for pair, reason in self.disabled.items() if links.issuperset(pair)}
+        write_srdf(Path(path), self.model.name, mine)
+
+    @property
+    def checker(self) -> Checker:
+        """The checks as they are laid out now."""
+        if self._checker is None:
+            bodies = (*self._links, *self._others.values())
+            self._checker = lay_out(self.model, bodies, self._allowed, self.margin, self.exact)
+        return self._checker
+
+    def in_collision(self, q: ArrayLike) -> bool:
+        """Whether anything collides at configuration q (nq,).
+
+        Raises:
+            InvalidConfiguration: If q is not a configuration of the model.
+        """
+        return self.checker.collides(as_configuration(self.model, q))
+
+    def pairs_in_collision(self, q: ArrayLike) -> tuple[Contact, ...]:
+        """What collides at configuration q (nq,), the deepest first.
+
+        Raises:
+            InvalidConfiguration: If q is not a configuration of the model.
+        """
+        return self.checker.contacts(as_configuration(self.model, q))
+
+    def min_distance(self, q: ArrayLike) -> Distance:
+        """The two bodies nearest to each other at configuration q (nq,), and where; the margin does not count.
+
+        Raises:
+            InvalidConfiguration: If q is not a configuration of the model.
+        """
+        return self.checker.nearest(as_configuration(self.model, q))
+
+    def in_collision_batch(self, Q: ArrayLike) -> NDArray[np.bool_]:
+        """Whether anything collides, (k,), at configurations Q (k, nq).
+
+        Raises:
+            InvalidConfiguration: If a row is not a configuration of the model.
+        """
+        return np.array([self.in_collision(q) for q in np.asarray(Q, dtype=float)], dtype=bool)
+
+    def min_distance_batch(self, Q: ArrayLike) -> NDArray[np.float64]:
+        """Distance (k,) of the nearest two bodies at configurations Q (k, nq), m.
+
+        Raises:
+            InvalidConfiguration: If a row is not a configuration of the model.
+        """
+        return np.array([self.min_distance(q).distance for q in np.asarray(Q, dtype=float)])
+
+    def _allowed(self, a: Body, b: Body) -> bool:
+        return pair_of(a.link, b.link) in self.disabled
+
+    def _enter(self, obstacle: Obstacle, joint: int, at: pin.SE3) -> None:
+        if obstacle.name in self.names:
+            raise InvalidGeometry(f"there is a {obstacle.name!r} in the world already")
+        solid = solid_of(obstacle.shape.geometry(), self.simplify, robot=False)
+        self._others[obstacle.name] = Body(obstacle.name, joint, at, solid)
+        self._checker = None
+
+    def _permit(self, name: str, touching: Iterable[str]) -> None:
+        for other in touching:
+            self.allow(name, other, "Touching")
+
+    def _pair(self, first: str, second: str) -> Pair:
+        for name in (first, second):
+            if name not in self.names:
+                raise UnknownName("body", str(name), self.names)
+        return pair_of(first, second)
+
+    def __repr__(self) -> str:
+        checked = sum(not reason for reason in self.pairs.values())
+        return f"CollisionWorld({self.robot.name}: {len(self.obstacles)} obstacles, {checked} pairs checked)"

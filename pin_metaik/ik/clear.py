@@ -1,0 +1,148 @@
+"""From a solution in collision to one that is free: other ones first, then pushed ones, then metaheuristic seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import count, cycle, islice
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.collision import CollisionWorld
+from pin_metaik.ik.ledger import Ledger
+from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.push import Push
+from pin_metaik.ik.solutions import VAIN, VAIN_EACH, gather
+from pin_metaik.ik.starts import BATCH, DEFAULT_SEED, Rng, drawn
+from pin_metaik.optimize import Metaheuristic, minimize
+
+NEAREST = 24  # entries of the atlas to start from
+CANDIDATES = 256  # solutions kept, to be told apart
+APART = 0.05  # rad or m between solutions; what is nearer collides alike
+OTHERS = 16  # starts of a redundant chain before any solution is pushed
+PUSHED = 4  # of the solutions found, those pushed in each round: the least deep
+SEEDING = 0.02  # of what is left, for a metaheuristic in each round
+ROUND = 256  # further starts in each round
+DEPTH_WEIGHT = 5.0  # what a metre of depth counts in it, in metres from the target
+ELITE = 8  # its best points that are refined, and the least deep solutions that it starts from
+
+
+class ClearSearch:
+    """One search for a solution of a problem that is free of collisions in the problem's world.
+
+    Attributes:
+        ledger: What was spent of which budget.
+        found: (CANDIDATES, n) solutions in collision; ``known`` rows of them are taken.
+        complete: Whether there are no other solutions, as far as can be told.
+    """
+
+    def __init__(
+        self, problem: IKProblem, world: CollisionWorld, base: NDArray[np.float64], ledger: Ledger, rng: Rng
+    ) -> None:
+        """Set up for a problem; ``base`` (nq,) holds the joints that the chain does not move."""
+        self.problem, self.world, self.base, self.ledger, self.rng = problem, world, base, ledger, rng
+        self.found = np.empty((CANDIDATES, problem.chain.n))
+        self.known = self.vain = 0
+        self.complete = False
+        self._depths = np.full(CANDIDATES, np.nan)  # of the solutions found, NaN where not known yet
+        self._pushed: set[int] = set()
+        self._redundant = problem.chain.n > len(problem.rows)
+        self._generator = np.random.default_rng(DEFAULT_SEED if rng is None else rng)
+
+    def run(self, x: NDArray[np.float64], seeder: Metaheuristic) -> NDArray[np.float64] | None:
+        """Coordinates (n,) that are a solution, from x (n,), which is one but for collisions; None: none was found."""
+        self.found[0], self.known = x, 1
+        starts = self.starts()
+        free = self.others(islice(starts, OTHERS) if self._redundant else starts)
+        for means in cycle(("push", "others", "seed")):
+            if free is not None or self.ledger.over() or self.complete:
+                break
+            match means:
+                case "push":
+                    free = self.push()
+                case "others":
+                    free = self.others(islice(starts, ROUND))
+                case _:
+                    free = self.seed(seeder)
+        return free
+
+    def least_deep(self) -> NDArray[np.float64]:
+        """Coordinates (n,) of the solution found that is least deep in collision."""
+        least: NDArray[np.float64] = self.found[self._by_depth()[0]]
+        return least
+
+    def starts(self) -> Iterator[NDArray[np.float64]]:
+        """Starts (n,): the atlas' nearest entries, then random ones, for ever."""
+        yield from self.problem.near(NEAREST)
+        for index in count():
+            yield from drawn(self.problem.chain, self.rng, index, BATCH)
+
+    def others(self, starts: Iterable[NDArray[np.float64]]) -> NDArray[np.float64] | None:
+        """Descend from starts (n,), one by one; the first new solution that is free."""
+        for start in starts:
+            if self.complete or self.ledger.over():
+                break
+            if self.known == CANDIDATES:  # forget all but the least deep
+                self.found[:ELITE] = self.found[self._by_depth()[:ELITE]]
+                self.known = ELITE
+                self._depths[:] = np.nan
+                self._pushed.clear()
+            room = self.found[: self.known + 1]
+            spent, known, row = gather(
+                self.problem, start[None], room, self.known, APART, 2, self.ledger.left(), branch=False
+            )
+            self.ledger.spent += spent
+            new = known > self.known
+            self.known, self.vain = known, 0 if new else self.vain + row
+            self.complete = not self._redundant and self.vain >= VAIN + VAIN_EACH * known
+            newest: NDArray[np.float64] = room[-1]
+            if new and self._accepts(newest):
+                return newest
+        return None
+
+    def _pushed_out(self, points: NDArray[np.float64]) -> NDArray[np.float64] | None:
+        """The first of the points (s, n) that can be pushed out of collision."""
+        for x in points:
+            refined = Push().refine(self.problem, self.world, x, self.base, self.ledger.left())
+            self.ledger.spent += refined.evaluations
+            if refined.met:
+                return refined.x
+        return None
+
+    def push(self) -> NDArray[np.float64] | None:
+        """Push the least deep of the solutions that have not been pushed yet out of collision."""
+        chosen = [i for i in self._by_depth() if i not in self._pushed][:PUSHED]
+        self._pushed.update(chosen)
+        return self._pushed_out(self.found[chosen])
+
+    def seed(self, seeder: Metaheuristic) -> NDArray[np.float64] | None:
+        """Search for a point that is near the target and not deep, and refine the best of them."""
+        problem, checker, chain = self.problem, self.world.checker, self.problem.chain
+
+        def costs(X: NDArray[np.float64]) -> NDArray[np.float64]:
+            depths = np.array([checker.depth(q) for q in chain.q(X, self.base)])
+            return problem.costs(X) + DEPTH_WEIGHT * depths
+
+        found = minimize(
+            costs,
+            problem.box,
+            seeder,
+            self.ledger.slice(SEEDING),
+            self._generator,
+            seeds=self.found[self._by_depth()[:ELITE]],
+            keep=ELITE,
+        )
+        self.ledger.add_search(found)
+        free = self.others(found.elite)
+        return self._pushed_out(found.elite[:2]) if free is None else free
+
+    def _accepts(self, x: NDArray[np.float64]) -> bool:
+        return self.problem.accepts(self.problem.chain.q(x, self.base))
+
+    def _by_depth(self) -> list[int]:
+        """Numbers of the solutions found, the least deep first."""
+        chain, depths = self.problem.chain, self._depths
+        for i in np.flatnonzero(np.isnan(depths[: self.known])):
+            depths[i] = self.world.checker.depth(chain.q(self.found[i], self.base))
+        order: list[int] = np.argsort(depths[: self.known], kind="stable").tolist()
+        return order

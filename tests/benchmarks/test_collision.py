@@ -1,0 +1,21 @@
+"""The benchmark of collisions runs, and writes what it measured."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+BENCHMARK = Path(__file__).parents[2] / "benchmarks" / "collision.py"
+
+
+@pytest.mark.slow
+def test_it_measures_every_section(tmp_path: Path) -> None:
+    out = tmp_path / "collision.md"
+    words = ["--robots", "panda", "--configurations", "20", "--safety", "50", "--targets", "3", "--out", str(out)]
+    done = subprocess.run([sys.executable, str(BENCHMARK), *words], capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    page = out.read_text()
+    for section in ("Checking time", "Safety", "Free of self-collision", "Among obstacles", "What each means brings"):
+        assert f"## {section}" in page
+    assert "| shelf | panda |" in page
