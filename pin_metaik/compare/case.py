@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from pin_metaik.collision import CollisionWorld
 from pin_metaik.compare.method import Answer
 from pin_metaik.ik import IKProblem, IKStatus, Verdict
 from pin_metaik.kinematics import Chain
@@ -16,6 +17,7 @@ from pin_metaik.robots import Robot
 
 Array = NDArray[np.float64]
 
+DRAWS = 10_000  # of a task, before a world is found to leave no room
 REACHED = "Within 1e-5 m and 1e-5 rad of the target and inside the limits, by Pinocchio, whatever the method says."
 
 
@@ -28,12 +30,14 @@ class Task:
         targets: World poses; a method gets one at a time, and starts from its answer to the one before.
         planted: (K, n) coordinates that reach them, if they were made from some.
         start: (n,) where to start from; ``None``: anywhere, drawn anew for every seed.
+        world: What must not collide.
     """
 
     chain: Chain
     targets: tuple[pin.SE3, ...]
     planted: Array | None = None
     start: Array | None = None
+    world: CollisionWorld | None = None
 
     @staticmethod
     def at(chain: Chain, X: Array, start: Array | None = None) -> Task:
@@ -43,7 +47,7 @@ class Task:
     @property
     def problems(self) -> list[IKProblem]:
         """The targets as problems."""
-        return [IKProblem.of(self.chain, pose) for pose in self.targets]
+        return [IKProblem.of(self.chain, pose, self.world) for pose in self.targets]
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +110,7 @@ class Case:
         about: How its targets are made, one sentence.
         draw: A task for a chain.
         chain: The chain that a robot is asked to move; one for all tasks.
+        world: What the robot stands in; tasks are drawn until what they were made from is free of collisions.
         judge: Whether an attempt at a task is a success.
         success: What that means, one sentence.
     """
@@ -114,5 +119,20 @@ class Case:
     about: str
     draw: Callable[[Chain, np.random.Generator], Task]
     chain: Callable[[Robot, np.random.Generator], Chain] = whole_arm
+    world: Callable[[Robot], CollisionWorld] | None = None
     judge: Callable[[Task, Attempt], bool] = reached
     success: str = REACHED
+
+    def task(self, chain: Chain, world: CollisionWorld | None, rng: np.random.Generator) -> Task:
+        """The task that a generator leads to.
+
+        Raises:
+            RuntimeError: In so many draws nothing is free of collisions.
+        """
+        if world is None:
+            return self.draw(chain, rng)
+        for _ in range(DRAWS):
+            task = self.draw(chain, rng)
+            if task.planted is None or not any(world.checker.collides(q) for q in chain.q(task.planted)):
+                return replace(task, world=world)
+        raise RuntimeError(f"none of {DRAWS:,} tasks is free of collisions")

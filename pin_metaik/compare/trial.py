@@ -14,6 +14,9 @@ from numpy.typing import NDArray
 
 from pin_metaik.compare.case import Attempt, Case, Task, travel
 from pin_metaik.compare.method import Answer, Method
+from pin_metaik.ik import IKProblem
+
+Array = NDArray[np.float64]
 
 CURVE = np.geomspace(0.005, 1.0, 32)  # shares of the budget at which a row keeps the best cost so far
 TIMES = ("seconds",)  # what no two runs have in common
@@ -113,13 +116,24 @@ def attempt(robot: str, case: Case, task: Task, method: Method, target: int, see
         x, answers, problems = start, list[Answer](), task.problems
         began = process_time()
         for problem, child in zip(problems, own, strict=True):
-            answers.append(method.solve(problem, x.copy(), budget, np.random.default_rng(child)))
+            answers.append(_answered(method, problem, x, budget, np.random.default_rng(child)))
             x = np.asarray(answers[-1].x, dtype=float)
         seconds = process_time() - began
         verdicts = [problem.verdict(task.chain.q(a.x)) for problem, a in zip(problems, answers, strict=True)]
         return _judged(row, case, task, Attempt(start, answers, verdicts), _curve(answers, budget), seconds)
     except Exception as error:  # a method, or a case, of anybody: the others go on
         return failed(row, error, process_time() - began)
+
+
+def _answered(method: Method, problem: IKProblem, x: Array, budget: int, rng: np.random.Generator) -> Answer:
+    """What a method says; while that collides, it gets random starts and what is left of the budget to find another."""
+    answer = method.solve(problem, x.copy(), budget, rng)
+    spent = answer.evaluations
+    while spent is not None and spent < budget and problem.verdict(problem.chain.q(answer.x)).collides:
+        start = problem.box.sample(rng, 1)[0]
+        answer = method.solve(problem, start, budget - spent, rng)
+        spent = None if answer.evaluations is None else spent + max(1, answer.evaluations)
+    return replace(answer, evaluations=spent)
 
 
 def failed(row: Trial, error: Exception, seconds: float = 0.0) -> Trial:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 
+from pin_metaik.collision import CollisionWorld
 from pin_metaik.compare.case import Case, Task
 from pin_metaik.compare.method import Method
 from pin_metaik.compare.trial import Trial, attempt, failed, generator
@@ -37,7 +38,8 @@ class Unit:
     def task(self) -> Task:
         """The task, the same whoever tries it."""
         chain = _arm(self.spec, self.robot, self.case, self.rng)
-        return self.case.draw(chain, generator(self.rng, self.robot, self.case.name, self.target))
+        world = _world(self.spec, self.case)
+        return self.case.task(chain, world, generator(self.rng, self.robot, self.case.name, self.target))
 
     def work(self) -> list[Trial]:
         """Run the trials; a case that cannot draw its task is an error in each of their rows."""
@@ -65,6 +67,12 @@ _warm: set[tuple[int, str]] = set()
 def _arm(spec: str, robot: str, case: Case, rng: int) -> Chain:
     """The chain of a case, made once in a process."""
     return case.chain(_robot(spec), generator(rng, robot, case.name))
+
+
+@lru_cache(maxsize=32)
+def _world(spec: str, case: Case) -> CollisionWorld | None:
+    """The world of a case, made once in a process."""
+    return None if case.world is None else case.world(_robot(spec))
 
 
 @lru_cache(maxsize=32)

@@ -1,11 +1,14 @@
 """Cases: their tasks are what they say, for any arm, and can be done."""
 
+from dataclasses import replace
+
 import numpy as np
 import pinocchio as pin
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import pin_metaik as mik
+from pin_metaik.collision import Obstacle, Sphere
 from pin_metaik.compare import CASES, Answer, Attempt, Case, Task
 from pin_metaik.compare.case import travel
 from pin_metaik.compare.cases.jacobians import jacobians
@@ -15,8 +18,10 @@ COUNT = 5
 
 
 def tasks(case: Case, robot: str) -> list[Task]:
-    chain = case.chain(mik.load_robot(robot), np.random.default_rng(7))
-    return [case.draw(chain, np.random.default_rng(i)) for i in range(COUNT)]
+    loaded = mik.load_robot(robot)
+    chain = case.chain(loaded, np.random.default_rng(7))
+    world = None if case.world is None else case.world(loaded)
+    return [case.task(chain, world, np.random.default_rng(i)) for i in range(COUNT)]
 
 
 def attempt(task: Task, X: np.ndarray, status: str = "SOLVED") -> Attempt:
@@ -34,8 +39,10 @@ def least_singular_value(task: Task) -> float:
     return float(np.linalg.svd(J, compute_uv=False)[-1])
 
 
-@pytest.mark.parametrize("name", CASES)
-@pytest.mark.parametrize("robot", ROBOTS)
+ANY_ARM = [(name, robot) for name, case in CASES.items() if case.world is None for robot in ROBOTS]
+
+
+@pytest.mark.parametrize(("name", "robot"), [*ANY_ARM, ("cluttered", "panda"), ("cluttered", "ur5")])
 def test_a_task_is_the_same_whenever_it_is_drawn_and_its_own_answer_is_a_success(name: str, robot: str) -> None:
     case = CASES[name]
     for task, again in zip(tasks(case, robot), tasks(case, robot), strict=True):
@@ -138,3 +145,25 @@ def test_a_jump_on_a_path_is_a_failure_and_a_whole_turn_of_a_continuous_joint_is
     assert case.judge(task, attempt(task, turned))
     assert not case.judge(task, attempt(task, jumped))
     assert np.abs(travel(task.chain, task.planted[:-1], task.planted[1:])).max() <= 0.0501
+
+
+def test_in_the_shelf_an_answer_that_collides_is_none() -> None:
+    task = tasks(CASES["cluttered"], "ur5")[0]
+    world = task.world
+    assert task.planted is not None and world is not None
+    assert not world.checker.collides(task.chain.q(task.planted[0]))
+    low, high = np.array([0.5, -0.4, 0.16]), np.array([0.8, 0.4, 0.74])
+    assert ((task.targets[0].translation > low) & (task.targets[0].translation < high)).all()
+    every = task.chain.x(mik.solve_ik_all(task.chain, task.targets[0]).q)
+    judged = [CASES["cluttered"].judge(task, attempt(task, x[None])) for x in every]
+    assert judged == [not world.checker.collides(task.chain.q(x)) for x in every]
+    assert any(judged) and not all(judged)
+
+
+def test_a_world_without_room_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    robot = mik.load_robot("ur5")
+    walled = mik.CollisionWorld(robot, [Obstacle("all", Sphere(5.0), pin.SE3.Identity())])
+    case = replace(CASES["cluttered"], draw=CASES["random"].draw, world=lambda robot: walled)
+    monkeypatch.setattr("pin_metaik.compare.case.DRAWS", 20)
+    with pytest.raises(RuntimeError, match="none of 20 tasks is free"):
+        case.task(case.chain(robot, np.random.default_rng(0)), walled, np.random.default_rng(0))

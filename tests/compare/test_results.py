@@ -126,7 +126,7 @@ def test_errors_false_claims_and_overspending_are_told(results: Results) -> None
     assert columns["method"] == ["mtde+dls", "gwo+dls", "gwo+dls"]
     assert [str(what).partition("trials ")[2] for what in columns["what"]] == [
         "raised ValueError: no",
-        "claimed a solution that Pinocchio does not confirm",
+        "claimed a solution that Pinocchio (or coal) does not confirm",
         "spent more than was allowed",
     ]
 

@@ -117,6 +117,13 @@ def test_who_spends_more_than_allowed_has_not_solved_it(tmp_path: Path) -> None:
     assert all(trial.met and not trial.solved for trial in read_rows(tmp_path))
 
 
+def test_methods_that_know_nothing_of_collisions_try_again_within_their_budget(tmp_path: Path) -> None:
+    methods = ("dls+restarts", "mtde@60+dls", "default")
+    compare(Suite(("ur5",), ("cluttered",), methods, targets=5, budget=2000), tmp_path)
+    trials = read_rows(tmp_path)
+    assert all(trial.solved and trial.evaluations is not None and trial.evaluations <= 2000 for trial in trials)
+
+
 def test_ctrl_c_keeps_what_is_done(tmp_path: Path) -> None:
     outcome = compare(Suite(("ur5",), ("random",), (Interrupted(),), targets=6), tmp_path)
     assert outcome.partial and outcome.done == len(read_rows(tmp_path)) == 2

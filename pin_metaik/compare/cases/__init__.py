@@ -6,6 +6,7 @@ from pin_metaik.compare.case import Case
 from pin_metaik.compare.cases.at_limits import AT_LIMITS
 from pin_metaik.compare.cases.boundary import BOUNDARY
 from pin_metaik.compare.cases.calibrated import CALIBRATED
+from pin_metaik.compare.cases.cluttered import CLUTTERED
 from pin_metaik.compare.cases.five_dof import FIVE_DOF
 from pin_metaik.compare.cases.just_out_of_reach import JUST_OUT_OF_REACH
 from pin_metaik.compare.cases.minimal_displacement import MINIMAL_DISPLACEMENT
@@ -22,6 +23,7 @@ CASES: dict[str, Case] = {
     "boundary": BOUNDARY,
     "just_out_of_reach": JUST_OUT_OF_REACH,
     "minimal_displacement": MINIMAL_DISPLACEMENT,
+    "cluttered": CLUTTERED,
     "five_dof": FIVE_DOF,
     "calibrated": CALIBRATED,
     "path": PATH,

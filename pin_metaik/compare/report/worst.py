@@ -53,7 +53,9 @@ def trouble(results: Results) -> Section | None:
         for case in results.cases:
             claims = summarise(results.of(case=case, method=method)).false_claims
             if claims:
-                rows.append((method, case, f"{claims:,} trials claimed a solution that Pinocchio does not confirm"))
+                rows.append(
+                    (method, case, f"{claims:,} trials claimed a solution that Pinocchio (or coal) does not confirm")
+                )
     over = Counter((t.method, t.case) for t in results.trials if (t.evaluations or 0) > t.allowed)
     rows += [(*who, f"{count:,} trials spent more than was allowed") for who, count in over.items()]
     if not rows:
