@@ -50,7 +50,8 @@ READING = """
   coal. Here they bring nothing; they come last, for targets that chance and pushes do not meet.
 - Maxima of several milliseconds are the machine's other users; evaluations are reproducible.
 - A target that holds the gripper in an obstacle is told after one solution; a non-redundant arm gives up when no new
-  solution appears; a redundant one that finds nothing spends its budget: 50,000 evaluations, 1.6 s on the Panda.
+  solution appears; a redundant one that finds nothing spends its budget: 50,000 evaluations, about a second on the
+  Panda.
 """
 
 Floats = NDArray[np.float64]

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 import pinocchio as pin
 
 from pin_metaik.collision.simplify import Simplify, Solid, solid_of
 from pin_metaik.errors import InvalidGeometry
-from pin_metaik.robots import Robot
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +33,31 @@ class Body:
     part: bool = False
 
 
-def robot_bodies(robot: Robot, simplify: Simplify) -> tuple[Body, ...]:
+class Geometry(Protocol):
+    """What a world needs of a robot: a ``Robot`` has it, or any object of your own with a model and its geometry."""
+
+    @property
+    def name(self) -> str:
+        """What to call it."""
+        ...
+
+    @property
+    def model(self) -> pin.Model:
+        """Its model."""
+        ...
+
+    @property
+    def collision_model(self) -> pin.GeometryModel:
+        """Its collision geometry."""
+        ...
+
+    @property
+    def srdf(self) -> Path | None:
+        """File with disabled collisions, or None."""
+        ...
+
+
+def robot_bodies(robot: Geometry, simplify: Simplify) -> tuple[Body, ...]:
     """The pieces of a robot's collision geometry.
 
     Raises:

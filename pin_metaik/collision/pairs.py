@@ -7,17 +7,16 @@ from typing import TypeAlias
 
 import pinocchio as pin
 
-from pin_metaik.collision.body import Body
+from pin_metaik.collision.body import Body, Geometry
 from pin_metaik.collision.srdf import Pair, pair_of, read_srdf
 from pin_metaik.collision.touch import touches
-from pin_metaik.robots import Robot
 
 Srdf: TypeAlias = str | Path | bool | None
 
 CLEAR = 0.01  # m beyond the margin that links must always keep before they need not be checked
 
 
-def disabled_pairs(robot: Robot, bodies: tuple[Body, ...], srdf: Srdf, margin: float) -> dict[Pair, str]:
+def disabled_pairs(robot: Geometry, bodies: tuple[Body, ...], srdf: Srdf, margin: float) -> dict[Pair, str]:
     """The pairs that are not checked, with the reason: what an SRDF says, else Adjacent, Always or Never.
 
     Args:

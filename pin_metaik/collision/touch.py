@@ -16,6 +16,7 @@ from pin_metaik.collision.srdf import Pair, pair_of
 SEED = 20_261_125
 SAMPLES = 500
 ALWAYS = 0.95  # of the samples: links that touch so often are made so
+CONTACT = 1e-6  # m; what is nearer touches, up to rounding
 ENOUGH = 100  # samples of the meshes, for links whose hulls always touch
 STARTS, STEPS, FIRST_STEP = 4, 50, 0.5  # of the descents in distance, the step in rad or m
 
@@ -79,9 +80,10 @@ def _sample(
     distances = np.array([hulls.distances(q) for q in Q])  # (SAMPLES, pieces)
     by_link = np.full((SAMPLES, count), np.inf)
     np.minimum.at(by_link.T, owner, distances.T)
-    share, gap = (by_link <= 0.0).mean(axis=0), np.maximum(by_link.min(axis=0), 0.0)
+    share, gap = (by_link <= CONTACT).mean(axis=0), np.maximum(by_link.min(axis=0), 0.0)
     meshes = np.zeros(count)
-    originals = Layer.of(model, [(body, body.solid.original, body.placement) for body in bodies], pieces)
+    margins = np.full(len(pieces), CONTACT)
+    originals = Layer.of(model, [(body, body.solid.original, body.placement) for body in bodies], pieces, margins)
     for link in np.flatnonzero(share >= ALWAYS):
         meshes[link] = _share(originals, np.flatnonzero(owner == link), Q[:ENOUGH])
     for piece in np.flatnonzero(gap[owner] > 0.0):

@@ -19,7 +19,7 @@ SHEET = 3.0  # m; how much of a plane is drawn
 
 
 def open_viewer(world: CollisionWorld, port: int = 8080) -> Any:
-    """Show a world, as it is now, at http://localhost:port.
+    """Show a world, as it is now, at http://localhost:port; a robot without ``visual_model`` by its collision geometry.
 
     Returns:
         A ``pinocchio.visualize.ViserVisualizer``: its ``display(q)`` moves the robot, its ``viewer`` is the server.
@@ -40,7 +40,7 @@ def open_viewer(world: CollisionWorld, port: int = 8080) -> Any:
 
 def _scene(world: CollisionWorld) -> pin.GeometryModel:
     """What the robot looks like, what it holds and what stands around."""
-    scene = world.robot.visual_model.clone()
+    scene = getattr(world.robot, "visual_model", world.robot.collision_model).clone()
     for obstacle in world.obstacles:
         _draw(scene, obstacle, 0, obstacle.pose, WOOD)
     for held, name in world.grasped:

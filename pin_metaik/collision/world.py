@@ -12,7 +12,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.collision.body import Body, robot_bodies
+from pin_metaik.collision.body import Body, Geometry, robot_bodies
 from pin_metaik.collision.checker import Checker
 from pin_metaik.collision.contact import Contact, Distance
 from pin_metaik.collision.layout import lay_out, moved
@@ -23,7 +23,6 @@ from pin_metaik.collision.simplify import Simplify, solid_of
 from pin_metaik.collision.srdf import Pair, pair_of, write_srdf
 from pin_metaik.errors import FrameNotFound, InvalidGeometry, InvalidSetting, UnknownName
 from pin_metaik.kinematics.chain import as_configuration
-from pin_metaik.robots import Robot
 
 
 class CollisionWorld:
@@ -44,7 +43,7 @@ class CollisionWorld:
 
     def __init__(
         self,
-        robot: Robot,
+        robot: Geometry,
         obstacles: Iterable[Obstacle] = (),
         margin: float = 0.0,
         srdf: Srdf = None,
@@ -55,7 +54,8 @@ class CollisionWorld:
         """Load the robot's geometry, find out which links ever touch, and put up the obstacles.
 
         Args:
-            robot: A robot with collision geometry.
+            robot: A robot with collision geometry: a ``Robot``, or any object with ``name``, ``model``,
+                ``collision_model`` and ``srdf`` (None or a path).
             obstacles: What stands in the world; more can be added later.
             margin: Distance at or below which two bodies collide, m. Links that are mostly nearer to each other are
                 built so, and only kept from touching.

@@ -1,5 +1,6 @@
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pinocchio as pin
@@ -169,3 +170,13 @@ def test_a_robot_without_geometry_is_refused(tmp_path: Path) -> None:
     )
     with pytest.raises(InvalidGeometry, match="no collision geometry"):
         mik.CollisionWorld(mik.load_robot(path))
+
+
+def test_a_model_of_ones_own_will_do() -> None:
+    model = pin.buildSampleModelManipulator()
+    own = SimpleNamespace(
+        name="own", model=model, collision_model=pin.buildSampleGeometryModelManipulator(model), srdf=None
+    )
+    q = pin.neutral(model)
+    assert not mik.CollisionWorld(own, [Obstacle("far", Sphere(0.2), (5.0, 0.0, 0.0))]).in_collision(q)
+    assert mik.CollisionWorld(own, [Obstacle("near", Sphere(2.0), (0.0, 0.0, 2.1))]).in_collision(q)

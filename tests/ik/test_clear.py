@@ -13,13 +13,15 @@ from tests.collision.worlds import brute_force, robot_of, world_of
 from tests.robots_under_test import chain_of
 
 
-def free_targets(name: str, world: mik.CollisionWorld, count: int, within: float = 0.9) -> list[pin.SE3]:
-    """Poses of random configurations free of collisions, not farther from the origin than ``within``."""
+def free_targets(
+    name: str, world: mik.CollisionWorld, count: int, within: float = 0.9, beyond: float = -1.0
+) -> list[pin.SE3]:
+    """Poses of random configurations free of collisions, ``within`` m of the origin and with x ``beyond``."""
     chain = chain_of(name)
     poses: list[pin.SE3] = []
     for q in chain.q(chain.box.sample(np.random.default_rng(2), 60 * count)):
         (pose,) = chain.placements(q)
-        if np.linalg.norm(pose.translation) < within and not world.in_collision(q):
+        if np.linalg.norm(pose.translation) < within and pose.translation[0] > beyond and not world.in_collision(q):
             poses.append(pose)
     return poses[:count]
 
@@ -40,7 +42,8 @@ def test_every_reachable_target_is_solved_free_of_self_collisions(name: str) -> 
 @pytest.mark.parametrize("name", ["panda", "ur5"])
 def test_targets_with_a_free_solution_are_solved_in_every_scene(name: str, scene: str) -> None:
     world = world_of(name, scene)
-    results = [mik.solve_ik(chain_of(name), pose, world=world) for pose in free_targets(name, world, 30, within=0.7)]
+    poses = free_targets(name, world, 30, beyond=0.4)  # where the obstacles are
+    results = [mik.solve_ik(chain_of(name), pose, world=world) for pose in poses]
     assert all(result.success and result.verify() for result in results)
     alone = [mik.solve_ik(chain_of(name), result.problem.targets[0].pose) for result in results]
     assert any(world.in_collision(result.q) for result in alone)
@@ -151,7 +154,7 @@ def test_a_path_in_a_world_is_free_at_every_pose() -> None:
 def collided(scene: str, count: int) -> list[tuple[mik.IKProblem, np.ndarray]]:
     """Problems of the Panda with a solution that collides, although a free one exists."""
     world, chain = world_of("panda", scene), chain_of("panda")
-    results = [mik.solve_ik(chain, pose) for pose in free_targets("panda", world, 100, within=0.7)]
+    results = [mik.solve_ik(chain, pose) for pose in free_targets("panda", world, 100, beyond=0.3)]
     return [
         (mik.IKProblem.of(chain, result.target, world), result.x)
         for result in results
