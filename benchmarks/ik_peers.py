@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import tempfile
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -196,6 +197,20 @@ class Descent(Solver):
             start = self.random()
 
 
+class PinMetaikQP(PinMetaik):
+    """Our QP refiner with daqp, from random starts: the same kind of solver as placo."""
+
+    def __init__(self, arm: SerialArm) -> None:
+        super().__init__(arm)
+        from pin_metaik import IKSolver
+        from pin_metaik.ik.refine.qp import QP
+
+        self.solver = IKSolver(seeder=None, refiner=QP("daqp"))
+
+    def solve(self, goal: Floats, start: Floats) -> Any:
+        return self.solve_ik(self.chain, goal, start, solver=self.solver)
+
+
 class Placo(Descent):
     """placo: a frame task, joint limits in the QP."""
 
@@ -367,13 +382,16 @@ class EAIK(Solver):
             raise Unsuitable("no decomposition known for its axes")
 
     def solve(self, goal: Floats, start: Floats) -> list[float] | None:
+        return next(self.every(goal), None)
+
+    def every(self, goal: Floats) -> Iterator[list[float]]:
+        """All solutions inside the limits."""
         for robot in self.robots:
             found = robot.IK(goal)
             for x, approximate in zip(found.Q, found.is_LS, strict=True):
                 inside = unwrapped(x.tolist(), self.bounds)
                 if inside is not None and not (approximate and np.abs(robot.fwdKin(x) - goal).max() > 0.5 * TOLERANCE):
-                    return inside
-        return None
+                    yield inside
 
     def answer(self, found: list[float] | None) -> Answer:
         return Answer(found)
@@ -381,6 +399,7 @@ class EAIK(Solver):
 
 SOLVERS: dict[str, type[Solver]] = {
     "pin_metaik": PinMetaik,
+    "pin_metaik-qp": PinMetaikQP,
     "roboticstoolbox": RoboticsToolbox,
     "placo": Placo,
     "pytracik": TracIK,

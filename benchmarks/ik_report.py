@@ -209,8 +209,8 @@ class Report:
 
     def _batches(self) -> list[str]:
         lines = [
-            "`solve_ik_batch` on the random targets, the best of the runs, which took turns: us a solve on the wall "
-            "and of processor time.",
+            f"`solve_ik_batch` on {self.batch[0].count:,} random targets, the best of the runs, which took turns: us a "
+            "solve on the wall and of processor time.",
             "",
             "| workers | robots | solved | mean us | processor | rate |",
             "|---|---|---|---|---|---|",

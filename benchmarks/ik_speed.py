@@ -235,7 +235,7 @@ def run(options: argparse.Namespace, report: Report) -> None:
                 bar.console.print(report.line(robot, family), highlight=False, soft_wrap=True)
         if hasattr(mik, "solve_ik_batch") and not options.no_batch:
             bar.update(task, description="batches", total=None)
-            report.batch += batch_rates(options.robots, chains, options.targets, options.seed)
+            report.batch += batch_rates(options.robots, chains, options.batch_targets, options.seed)
 
 
 def main() -> None:
@@ -282,6 +282,9 @@ def parsed() -> argparse.Namespace:
     parser.add_argument("--peer", action="append", default=[], metavar="NAME=PYTHON", help="may be repeated")
     parser.add_argument("--block", type=int, default=20, help="targets measured at a stretch (%(default)s)")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument(
+        "--batch-targets", type=int, default=10_000, help="random ones, for solve_ik_batch (%(default)s)"
+    )
     parser.add_argument("--no-batch", action="store_true", help="leave out solve_ik_batch")
     parser.add_argument("--out", type=Path, help="Markdown file; default: standard output")
     options = parser.parse_args()

@@ -15,7 +15,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import numpy as np
-from ik_peers import SOLVERS, Solver, Unsuitable
+from ik_peers import EAIK, SOLVERS, Solver, Unsuitable
 from ik_serial import SerialArm
 
 
@@ -53,6 +53,10 @@ def reply(name: str, solvers: list[Solver], request: dict[str, Any]) -> dict[str
             return {"version": version(SOLVERS[name].package)}
         if request["do"] == "load":
             solvers[:] = [SOLVERS[name](SerialArm.from_json(request["arm"]))]
+        if request["do"] == "every":
+            (solver,) = solvers
+            assert isinstance(solver, EAIK)
+            return {"every": [list(solver.every(solver.goal(np.array(pose)))) for pose in request["poses"]]}
         return measured(solvers[0], request["poses"], request["starts"])
     except PackageNotFoundError:
         return {"failed": f"{SOLVERS[name].package} is not installed"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable
 from functools import cache, wraps
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Singles = NDArray[np.float32]
 Ints = NDArray[np.int64]
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -26,22 +28,35 @@ NOTICE = "pin_metaik: compiling an inner loop for this machine, once; this takes
 
 
 def jit(signature: str) -> Callable[[F], F]:
-    """A function that is compiled for this numba signature when first called, or read from the cache."""
+    """A function that is compiled for this numba signature when first called, or read from the cache.
+
+    One argument's type may end in ``?``: it may be None, and the function is compiled apart for that, without what
+    depends on it.
+    """
+    optional = _place_of_optional(signature)
+    versions = signature.replace("?", ""), re.sub(r"[a-z0-9]+\[[^\]]*\]\?", "none", signature)
 
     def lazy(function: F) -> F:
         @cache
-        def compiled() -> Callable[..., Any]:
+        def compiled(without: bool = False) -> Callable[..., Any]:
             notice = Timer(WAIT, lambda: print(NOTICE, file=sys.stderr, flush=True))
             notice.daemon = True
             notice.start()
             try:
-                return cast(Callable[..., Any], numba.njit(signature, fastmath=LOOSE, **OPTIONS)(function))
+                return cast(Callable[..., Any], numba.njit(versions[without], fastmath=LOOSE, **OPTIONS)(function))
             finally:
                 notice.cancel()
 
-        @wraps(function)
-        def call(*arguments: Any) -> Any:
-            return compiled()(*arguments)
+        if optional is None:
+
+            @wraps(function)
+            def call(*arguments: Any) -> Any:
+                return compiled()(*arguments)
+        else:
+
+            @wraps(function)
+            def call(*arguments: Any) -> Any:
+                return compiled(arguments[optional] is None)(*arguments)
 
         call.compiled = compiled  # type: ignore[attr-defined]  # for whoever calls so often that one more frame counts
         return cast(F, call)
@@ -49,16 +64,32 @@ def jit(signature: str) -> Callable[[F], F]:
     return lazy
 
 
+def _place_of_optional(signature: str) -> int | None:
+    """The number of the argument whose type ends in ``?``."""
+    arguments = re.sub(r"\[[^\]]*\]", "", signature[signature.rindex("(") + 1 :])
+    return next((i for i, one in enumerate(arguments.split(",")) if "?" in one), None)
+
+
+# Parts of loops see arrays but neither make nor return any, so that nobody need count who holds them: counting took
+# a third of the time of a descent.
+PART: dict[str, Any] = {**OPTIONS, "_nrt": False}
+
+
 def inline(function: F) -> F:
     """A part of a loop: compiled into each loop that calls it, with what is constant there."""
-    return cast(F, numba.njit(fastmath=LOOSE, forceinline=True, **OPTIONS)(function))
+    return cast(F, numba.njit(fastmath=LOOSE, forceinline=True, **PART)(function))
 
 
 def shared(function: F) -> F:
     """A part that several loops call: compiled once, for all of them."""
-    return cast(F, numba.njit(fastmath=LOOSE, **OPTIONS)(function))
+    return cast(F, numba.njit(fastmath=LOOSE, **PART)(function))
 
 
 def exact(function: F) -> F:
     """A part of a loop whose roundings must come in the order written."""
-    return cast(F, numba.njit(fastmath={"contract"}, forceinline=True, **OPTIONS)(function))
+    return cast(F, numba.njit(fastmath={"contract"}, forceinline=True, **PART)(function))
+
+
+def allocating(function: F) -> F:
+    """What makes arrays for a loop, before it begins, or returns parts of them."""
+    return cast(F, numba.njit(**OPTIONS)(function))

@@ -19,12 +19,11 @@ from pin_metaik.ik.fast import run_lane
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solve import solve_one
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
-from pin_metaik.ik.starts import FIRST, Rng, drawn
+from pin_metaik.ik.starts import LANE, Rng, drawn
 from pin_metaik.ik.target import DEFAULT_TOLERANCE, Target, TargetLike
 from pin_metaik.kinematics import Chain
-from pin_metaik.kinematics.pose import ORTHONORMAL
 
-CHUNK = 256  # targets a thread takes at a time
+CHUNKS, LEAST, MOST = 4, 16, 256  # parts for each worker, and how many targets are in one
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,30 +110,36 @@ def solve_ik_batch(
     )  # fmt: skip
 
     def alone(i: int) -> None:
-        result = solve_one(chain, asked[i], bases[i], solver, seed)
+        try:
+            result = solve_one(chain, asked[i], bases[i], solver, seed)
+        except InvalidTarget as error:
+            raise InvalidTarget(f"target {i}: {error}") from None
         batch.q[i], batch.success[i], batch.status[i] = result.q, result.success, result.status
         batch.position_error[i], batch.orientation_error[i] = result.position_error, result.orientation_error
         batch.evaluations[i] = result.evaluations
 
     fast = solver.fast if array is not None and len(chain.frames) == 1 else None
-    with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
+    workers = workers or os.cpu_count() or 1
+    with ThreadPoolExecutor(workers) as pool:
         left: Iterable[int] = range(k)
         if array is not None and fast is not None:
-            poses, starts = _as_poses(array), drawn(chain, seed, 0, FIRST)
-            _ = chain.lane  # made once, before the threads ask for it
+            poses, starts = _as_poses(array), drawn(chain, seed, 0, LANE)
             tolerances = DEFAULT_TOLERANCE, DEFAULT_TOLERANCE if array.ndim == 3 else math.inf
+            chain.lane(array.ndim == 3)  # made once, before the threads ask for it
 
             def together(part: slice) -> NDArray[np.int64]:
                 ended = run_lane(chain, solver, fast, starts, tolerances, poses[part], bases[part], batch.q[part])
                 return _judge(batch, poses[part], tolerances, ended, part)
 
-            left = np.concatenate([*pool.map(together, _slices(k)), np.empty(0, np.int64)])
+            left = np.concatenate([*pool.map(together, _slices(k, workers)), np.empty(0, np.int64)])
         list(pool.map(alone, map(int, left)))
     return replace(batch, seconds=perf_counter() - began)
 
 
-def _slices(k: int) -> list[slice]:
-    return [slice(i, min(i + CHUNK, k)) for i in range(0, k, CHUNK)]
+def _slices(k: int, workers: int) -> list[slice]:
+    """Parts of k targets, small enough that all workers have something to do until the end."""
+    size = min(max(k // (CHUNKS * workers), LEAST), MOST)
+    return [slice(i, min(i + size, k)) for i in range(0, k, size)]
 
 
 def _judge(
@@ -146,35 +151,35 @@ def _judge(
 ) -> NDArray[np.int64]:
     """Let Pinocchio judge one part of the batch; returns the numbers of what is left to solve."""
     chain, q = batch.chain, batch.q[part]
-    position, orientation = _errors(chain, q, poses)
+    position, orientation = _errors(chain, q, poses).T
     if tolerances[1] == math.inf:
         orientation[:] = 0.0
     batch.position_error[part], batch.orientation_error[part] = position, orientation
     batch.evaluations[part] = ended[:, 0]
-    met = (position <= tolerances[0]) & (orientation <= tolerances[1]) & (chain.inside(q) == q).all(axis=1)
+    met = (
+        (ended[:, 1] == chain.kernels.SOLVED)
+        & (position <= tolerances[0])
+        & (orientation <= tolerances[1])
+        & (chain.inside(q) == q).all(axis=1)
+    )
     batch.success[part] = met
     batch.status[part] = IKStatus.SOLVED
     left: NDArray[np.int64] = np.arange(part.start, part.stop)[~met]
     return left
 
 
-def _errors(
-    chain: Chain, q: NDArray[np.float64], poses: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Distance and angle (k,) of the chain's frame from poses (k, 4, 4) at configurations q (k, nq), by Pinocchio."""
-    model, data, frame = chain.model, chain.data, chain.frame_ids[0]
-    reached = np.empty((len(q), 4, 4))
-    for i, one in enumerate(q):
-        pin.forwardKinematics(model, data, one)
-        reached[i] = pin.updateFramePlacement(model, data, frame).homogeneous
-    R = poses[:, :3, :3].transpose(0, 2, 1) @ reached[:, :3, :3]
-    skew = 0.5 * np.stack([R[:, 2, 1] - R[:, 1, 2], R[:, 0, 2] - R[:, 2, 0], R[:, 1, 0] - R[:, 0, 1]], axis=1)
-    angle = np.arctan2(np.linalg.norm(skew, axis=1), 0.5 * (np.trace(R, axis1=1, axis2=2) - 1.0))
-    return np.linalg.norm(reached[:, :3, 3] - poses[:, :3, 3], axis=1), angle
+def _errors(chain: Chain, q: NDArray[np.float64], poses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Distance and angle (k, 2) of the chain's frame from poses (k, 4, 4) at configurations q (k, nq), by Pinocchio."""
+    reached, errors = np.empty((len(q), 4, 4)), np.empty((len(q), 2))
+    with chain.lent_data() as data:
+        for i, one in enumerate(q):
+            reached[i] = chain.place(data, one).homogeneous
+    chain.kernels.distances(poses, reached, errors)
+    return errors
 
 
 def _as_array(targets: ArrayLike | Sequence[TargetLike]) -> NDArray[np.float64] | None:
-    """Poses (k, 4, 4) or positions (k, 3), checked; None for a list of other things."""
+    """Poses (k, 4, 4) or positions (k, 3); None for a list of other things."""
     if isinstance(targets, Sequence) and any(isinstance(one, (Target, pin.SE3)) for one in targets):
         return None
     try:
@@ -187,16 +192,6 @@ def _as_array(targets: ArrayLike | Sequence[TargetLike]) -> NDArray[np.float64] 
         if isinstance(targets, Sequence):
             return None
         raise InvalidTarget(f"targets are poses (k, 4, 4) or positions (k, 3), got shape {array.shape}")
-    sound = np.isfinite(array).all(axis=tuple(range(1, array.ndim)))
-    if array.ndim == 3:
-        R = np.where(sound[:, None, None], array[:, :3, :3], np.eye(3))
-        defect = np.abs(R.transpose(0, 2, 1) @ R - np.eye(3)).max(axis=(1, 2), initial=0.0)
-        sound &= (defect <= ORTHONORMAL) & (np.linalg.det(R) > 0.0) & (array[:, 3] == [0.0, 0.0, 0.0, 1.0]).all(axis=1)
-    for i in np.flatnonzero(~sound):
-        try:
-            Target.of(array[i])
-        except InvalidTarget as error:
-            raise InvalidTarget(f"target {i}: {error}") from None
     return array
 
 

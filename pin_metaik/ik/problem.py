@@ -95,6 +95,12 @@ class IKProblem:
         return self.chain.box
 
     @cached_property
+    def descended(self) -> NDArray[np.int64] | None:
+        """The rows as a descent takes them: None for one frame's whole pose without slack, which it is made for."""
+        whole = len(self.targets) == 1 and not self.tasks[0, 12:18].any()
+        return None if whole else self.rows
+
+    @cached_property
     def good_enough(self) -> float:
         """A cost that is certainly within every tolerance."""
         return float(np.min(self.tasks[:, [18, 21]] * self.tasks[:, [24, 25]]))

@@ -117,5 +117,5 @@ class IKResult:
     def __str__(self) -> str:
         return (
             f"{self.status}: {self.position_error:.3g} m, {self.orientation_error:.3g} rad from the target after "
-            f"{self.evaluations} evaluations in {1e3 * self.seconds:.3g} ms"
+            f"{self.evaluations} evaluations in {1e3 * self.seconds:.4g} ms"
         )

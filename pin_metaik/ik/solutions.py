@@ -154,7 +154,7 @@ def gather(
     result: tuple[int, int, int] = chain.kernels.descend_all(
         *chain.paths.arrays,
         problem.tasks,
-        problem.rows,
+        problem.descended,
         *chain.limits.arrays,
         np.ascontiguousarray(starts),
         apart,

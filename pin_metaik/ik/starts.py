@@ -14,6 +14,7 @@ from pin_metaik.kinematics import Chain
 Rng: TypeAlias = int | np.random.Generator | None
 
 DEFAULT_SEED = 0
+LANE = 256  # starts of the fast lane
 FIRST, BATCH = 16, 64  # starts refined before the first look at the clock and at the reach, and between further ones
 
 

@@ -1,12 +1,14 @@
 """A table of sampled configurations, looked up by pose: where a descent starts.
 
-From the entry whose pose is nearest a descent needs 8 evaluations where a random start needs 22 (see ``descent``). The
-entries are kept in leaves of a balanced k-d tree; a look-up compares the target with the means of all leaves, then with
-the entries of the nearest few, which takes 1 us instead of the 5 us of comparing it with all.
+From the best of the entries with the nearest poses a descent needs 7 evaluations where a random start needs 22 (see
+``descent`` and ``guesses``). The entries are kept in leaves of a balanced k-d tree; a look-up compares the target with
+the means of all leaves, then with the entries of the nearest few, which takes 1 us instead of the 5 us of comparing it
+with all.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 
@@ -23,32 +25,41 @@ class Atlas:
     """Sampled coordinates with the features of their poses.
 
     A feature (9 T,) is, for each tip, its position and its x and z axes, the axes times ``scale`` (m), so that
-    Euclidean distances between features weigh metres against turns.
+    Euclidean distances between features weigh metres against turns. All in single precision: a start need not be more
+    precise, and all of it then stays in the cache.
 
     Attributes:
         leaves: (1 + c, 9 T, LEAF) features by column: leaf 0 holds the means of the c others.
         x: (c LEAF, n) coordinates, leaf after leaf.
+        gains: (c LEAF, n, 6) what the tip's error there, in its own frame, is multiplied with for a Newton step; of a
+            chain with one tip.
         scale: m.
     """
 
-    leaves: NDArray[np.float64]
-    x: NDArray[np.float64]
+    leaves: NDArray[np.float32]
+    x: NDArray[np.float32]
+    gains: NDArray[np.float32]
     scale: float
 
     @property
-    def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+    def arrays(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32], float]:
         """The arrays in the order in which the descent takes them."""
-        return self.leaves, self.x, self.scale
+        return self.leaves, self.x, self.gains, self.scale
 
 
 @cache
 def no_atlas(n: int, tips: int) -> Atlas:
     """An atlas without entries, for descents from given starts only."""
-    return Atlas(np.empty((0, 9 * tips, LEAF)), np.empty((0, n)), 1.0)
+    none = np.zeros(0, np.float32)
+    return Atlas(none.reshape(0, 9 * tips, LEAF), none.reshape(0, n), none.reshape(0, n, 6), 1.0)
 
 
-def chart(x: NDArray[np.float64], poses: NDArray[np.float64]) -> Atlas:
-    """An atlas of the coordinates x (LEAF LEAF, n) with the poses (k, T, 4, 4) of their tips."""
+def chart(
+    x: NDArray[np.float64],
+    poses: NDArray[np.float64],
+    gains: Callable[[NDArray[np.float64]], NDArray[np.float32]],
+) -> Atlas:
+    """An atlas of the coordinates x (LEAF LEAF, n) with the poses (k, T, 4, 4) of their tips, and gains for them."""
     positions = poses[..., :3, 3]
     spread = np.sqrt(((positions - positions.mean(axis=0)) ** 2).sum(axis=-1).mean())
     scale = TURN * max(float(spread), 1e-6)
@@ -57,7 +68,8 @@ def chart(x: NDArray[np.float64], poses: NDArray[np.float64]) -> Atlas:
     order = _leaves(features, np.arange(len(x)))
     leaves = features[order].reshape(-1, LEAF, features.shape[1])
     leaves = np.concatenate([leaves.mean(axis=1)[None], leaves])
-    return Atlas(np.ascontiguousarray(leaves.transpose(0, 2, 1)), x[order], scale)
+    columns = np.ascontiguousarray(leaves.transpose(0, 2, 1), dtype=np.float32)
+    return Atlas(columns, x[order].astype(np.float32), gains(x[order]), scale)
 
 
 def _leaves(features: NDArray[np.float64], members: NDArray[np.int64]) -> NDArray[np.int64]:

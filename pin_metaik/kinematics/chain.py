@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import cached_property
 from threading import local
 from types import ModuleType
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
 import pinocchio as pin
@@ -21,7 +22,10 @@ from pin_metaik.kinematics.paths import lay_paths, motion_of
 from pin_metaik.kinematics.reach import Reach, reach_of
 from pin_metaik.optimize import Box
 
+Lane: TypeAlias = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float32]]
+
 REMEMBERED = 16  # sets of samples kept
+MANY = 24  # joints from which on a frame's Jacobian takes less time than all placements, whichever limb it is on
 
 
 class Chain:
@@ -94,6 +98,9 @@ class Chain:
         self.kernels = _kernels()
         self._local = local()
         self._samples: dict[tuple[int, tuple[int, ...]], NDArray[np.float64]] = {}
+        self._many_limbs = model.njoints > MANY
+        self._spare: list[pin.Data] = []
+        self._lanes: dict[bool, Lane] = {}
         self._reaches: dict[tuple[int, bool], Reach] = {}
 
     @property
@@ -104,6 +111,16 @@ class Chain:
         except AttributeError:
             self._local.data = self.model.createData()
             return self._local.data
+
+    @contextmanager
+    def lent_data(self) -> Iterator[pin.Data]:
+        """The same for a thread that does not live long: making one takes a millisecond for a big model."""
+        try:
+            data = self._spare.pop()
+        except IndexError:
+            data = self.model.createData()
+        yield data
+        self._spare.append(data)
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle by what the chain was made from."""
@@ -150,24 +167,29 @@ class Chain:
     @cached_property
     def atlas(self) -> Atlas:
         """Sampled configurations to look a pose up in; made on first use, in about 5 ms, always the same."""
-        X = self.box.sample(np.random.default_rng(SEED), LEAF * LEAF)
-        return chart(X, self.poses(X))
+        X = self.limits.one_turn().box().sample(np.random.default_rng(SEED), LEAF * LEAF)
+        return chart(X, self.poses(X), self._gains)
 
-    @cached_property
-    def lane(self) -> tuple[Any, ...]:
-        """The fast lane's loop, and what it takes of a chain with one frame."""
-        coordinates, joints = self.coordinates, self.model.joints
-        places = [(joints[int(j)].idx_q, joints[int(j)].nq == 2) for j in coordinates.joints]
-        places_of = np.array(places, dtype=np.int64)
-        return (
-            self.kernels.solve_poses.compiled(),
-            *self.paths.arrays,
-            *self.limits.arrays,
-            *self.atlas.arrays,
-            self._least,
-            self._most,
-            places_of,
-        )
+    def _gains(self, X: NDArray[np.float64]) -> NDArray[np.float32]:
+        """Gains (k, n, 6) for the atlas at coordinates X (k, n); zero for a chain with several frames."""
+        gains = np.zeros((*X.shape, 6), np.float32)
+        if len(self.frames) == 1:
+            self.kernels.gains_of(*self.paths.arrays, X, gains)
+        return gains
+
+    def lane(self, oriented: bool) -> Lane:
+        """What the fast lane takes of a chain with one frame, for targets with or without an orientation."""
+        if oriented not in self._lanes:
+            joints = [self.model.joints[int(j)] for j in self.coordinates.joints]
+            self._lanes[oriented] = self.kernels.pack(
+                self.paths.arrays,
+                self.limits.arrays,
+                self.atlas.arrays,
+                (self._least, self._most),
+                np.array([(joint.idx_q, joint.nq == 2) for joint in joints], dtype=np.int64),
+                self.reach(0, oriented).array,
+            )
+        return self._lanes[oriented]
 
     def sample(self, count: int, seed: tuple[int, ...]) -> NDArray[np.float64]:
         """Coordinates (count, n) drawn uniformly from the box; one array for a seed, so not to be written to."""
@@ -182,6 +204,18 @@ class Chain:
         if (tip, oriented) not in self._reaches:
             self._reaches[tip, oriented] = reach_of(self.paths, self.limits, tip, oriented)
         return self._reaches[tip, oriented]
+
+    def place(self, data: pin.Data, q: NDArray[np.float64]) -> pin.SE3:
+        """World placement of the first frame at configuration q (nq,), by Pinocchio; ``data`` holds it, so not to keep.
+
+        Of a model with many limbs only the frame's own is computed, which the frame's Jacobian does.
+        """
+        model, frame = self.model, self.frame_ids[0]
+        if self._many_limbs:
+            pin.computeFrameJacobian(model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)
+        else:
+            pin.forwardKinematics(model, data, q)
+        return pin.updateFramePlacement(model, data, frame)
 
     def placements(self, q: NDArray[np.float64]) -> list[pin.SE3]:
         """World placement of each frame at configuration q (nq,), by Pinocchio."""

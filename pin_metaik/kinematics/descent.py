@@ -16,8 +16,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, inline, shared
-from pin_metaik.kinematics.kernels import forward, jacobian, pose_error, residual
+from pin_metaik.compiled import Floats, Ints, allocating, inline, shared
+from pin_metaik.kinematics.kernels import copy, forward, jacobian, pose_error, residual
 
 PATIENCE = 4  # steps that must bring the squared error below `progress`, or the start is given up
 DAMPING_FLOOR = 1e-9  # what is left of the damping at a solution
@@ -29,13 +29,13 @@ Settings: TypeAlias = tuple[float, float, int]  # damping, progress, evaluations
 Work: TypeAlias = tuple[Floats, ...]
 
 
-@shared
-def workspace(n: int, m: int, S: int) -> Work:
+@allocating
+def workspace(n: int, rows: Ints | None, S: int) -> Work:
     """Scratch arrays of a descent: one allocation for all starts."""
+    m = 6 if rows is None else rows.shape[0]
     axes, origins, pose, error = np.empty((S, 3)), np.empty((S, 3)), np.empty(12), np.empty(6)
-    r6, J6, H6, y6 = np.empty(6), np.empty((n, 6)), np.empty((6, 6)), np.empty(6)
-    r, J, H, y = np.empty(m), np.empty((n, m)), np.empty((m, m)), np.empty(m)
-    return axes, origins, pose, error, r6, J6, H6, y6, r, J, H, y, np.empty(n), np.empty(n), np.empty(n)
+    r6, J6, r, J, H, y = np.empty(6), np.empty((n, 6)), np.empty(m), np.empty((n, m)), np.empty((m, m)), np.empty(m)
+    return axes, origins, pose, error, r6, J6, r, J, H, y, np.empty(n), np.empty(n), np.empty(n)
 
 
 @inline
@@ -45,7 +45,7 @@ def evaluate(arm: Arm, tasks: Floats, rows: Ints, x: Floats, work: Work) -> tupl
     Returns |r|^2 and whether every tip is in tolerance.
     """
     joints, wiring, ends, tips = arm
-    axes, origins, pose, error, r6, J6, _, _, r, J, _, _, _, _, _ = work
+    axes, origins, pose, error, r6, J6, r, J, _, _, _, _, _ = work
     m = 0
     square = 0.0
     solved = True
@@ -73,7 +73,7 @@ def evaluate(arm: Arm, tasks: Floats, rows: Ints, x: Floats, work: Work) -> tupl
 def evaluate_pose(arm: Arm, task: Floats, x: Floats, work: Work) -> tuple[float, bool]:
     """The same for one tip's whole pose without slack: what almost everybody asks for, at half the time."""
     joints, wiring, _, tips = arm
-    axes, origins, pose, error, r, J, _, _, _, _, _, _, _, _, _ = work
+    axes, origins, pose, error, _, _, r, J, _, _, _, _, _ = work
     forward(joints, wiring, 0, joints.shape[0], tips[0], task[:12], x, axes, origins, pose)
     pose_error(pose, error)
     position, orientation = residual(task, error, r)
@@ -171,7 +171,7 @@ def step(
 def descend_from(
     arm: Arm,
     tasks: Floats,
-    rows: Ints,
+    rows: Ints | None,
     bounds: Bounds,
     start: Floats,
     settings: Settings,
@@ -180,24 +180,21 @@ def descend_from(
     best: Floats,
     work: Work,
 ) -> tuple[int, bool, float]:
-    """Descend from one start (n,), for no more evaluations than are left.
+    """Descend from one start (n,), for no more evaluations than are left; ``rows`` None: to one tip's whole pose.
 
     Returns the evaluations spent, whether the tolerances are met, and the least |r|^2 so far, here or before;
     ``best`` (n,) gets the coordinates that have it.
     """
-    _, _, _, _, r6, J6, H6, y6, r, J, H, y, x, dx, held = work
+    _, _, _, _, _, _, r, J, H, y, x, dx, held = work
     lower, upper, _ = bounds
     damping, progress, steps = settings
-    whole = tasks.shape[0] == 1 and rows.shape[0] == 6
-    for j in range(6):
-        whole = whole and tasks[0, 12 + j] == 0.0
     for c in range(x.shape[0]):
         x[c] = min(max(start[c], lower[c]), upper[c])
     mark = np.inf
     found = False
     polish = POLISH
     for i in range(min(steps, evaluations)):
-        if whole:
+        if rows is None:
             square, solved = evaluate_pose(arm, tasks[0], x, work)
         else:
             square, solved = evaluate(arm, tasks, rows, x, work)
@@ -205,7 +202,7 @@ def descend_from(
             return i + 1, True, least
         if square < least or solved:
             least = square
-            best[:] = x
+            copy(x, best)
         if solved:
             polish = polish - 1 if found else POLISH
             found = True
@@ -215,8 +212,6 @@ def descend_from(
             if square > progress * mark:
                 return i + 1, False, least
             mark = square
-        if whole:
-            step(x, lower, upper, r6, J6, 6, damping * square + DAMPING_FLOOR, H6, y6, dx, held)
-        else:
-            step(x, lower, upper, r, J, rows.shape[0], damping * square + DAMPING_FLOOR, H, y, dx, held)
+        m = 6 if rows is None else rows.shape[0]
+        step(x, lower, upper, r, J, m, damping * square + DAMPING_FLOOR, H, y, dx, held)
     return min(steps, evaluations), found, least

@@ -25,9 +25,16 @@ import math
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, exact, inline, jit, shared
+from pin_metaik.compiled import Floats, Ints, Singles, exact, inline, jit, shared
 
 PATHS = "f8[:,::1], i8[:,::1], i8[::1], f8[:,::1]"  # joints, wiring, ends, tips
+
+
+@inline
+def copy(source: Floats | Singles, target: Floats) -> None:
+    """Copy (n,) numbers; an assignment of slices compiles for two seconds longer, for the message it might raise."""
+    for i in range(target.shape[0]):
+        target[i] = source[i]
 
 
 @exact

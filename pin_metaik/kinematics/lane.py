@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, inline, jit
-from pin_metaik.kinematics.descent import workspace
-from pin_metaik.kinematics.kernels import PATHS
-from pin_metaik.kinematics.searches import ATLAS, BOUNDS, search
+from pin_metaik.compiled import Floats, Ints, Singles, allocating, inline, jit
+from pin_metaik.kinematics.atlas import LEAF
+from pin_metaik.kinematics.descent import Arm, Bounds, workspace
+from pin_metaik.kinematics.guesses import Atlas, lookup_space
+from pin_metaik.kinematics.reach import ROUNDING
+from pin_metaik.kinematics.searches import search
 
 ORTHONORMAL = 1e-6  # how far R'R may be from the identity
+POSITION = np.array([[0, 0], [0, 1], [0, 2]])  # the rows that count where orientation is free
 SOLVED, UNSOLVED, NO_POSE, NO_START = 0, 1, 2, 3
 
 
@@ -40,24 +44,73 @@ def task_of(M: Floats, task: Floats) -> None:
         task[9 + i] = offset
 
 
+def pack(
+    arm: Arm, bounds: Bounds, atlas: Atlas, span: tuple[Floats, Floats], places: Ints, reach: Floats
+) -> tuple[Floats, Ints, Singles]:
+    """A chain in three blocks: numbers, whole numbers and the atlas.
+
+    Every argument of a compiled loop costs a call from Python another 90 ns. Of these arguments ``search`` does not
+    have ``span``, limits (nq,) of every entry of q; ``places`` (n, 2), where in q a coordinate is and whether it is a
+    pair (cos, sin); and ``reach`` (8,), what bounds the distance of the tip's point from a world point.
+    """
+    (joints, wiring, ends, tips), (lower, upper, winds), (leaves, entries, gains, scale) = arm, bounds, atlas
+    numbers = joints, tips, lower, upper, np.array([scale]), *span, reach
+    sizes = np.array([len(joints), len(lower), len(span[0]), len(leaves)])
+    return _joined(numbers), _joined((sizes, wiring, ends, winds, places)), _joined((leaves, entries, gains))
+
+
+def _joined(parts: tuple[Floats | Ints | Singles, ...]) -> Any:
+    return np.concatenate([part.ravel() for part in parts])
+
+
+@allocating
+def unpack(
+    numbers: Floats, whole: Ints, tables: Singles
+) -> tuple[Arm, Bounds, Atlas, tuple[Floats, Floats], Ints, Floats]:
+    """What ``pack`` took."""
+    S, n, nq, L = whole[0], whole[1], whole[2], whole[3]
+    a = 14 * S + 12
+    b = a + 2 * n
+    c = b + 1 + 2 * nq
+    d = 6 + 2 * S
+    e = 9 * LEAF * L
+    k = LEAF * (L - 1)
+    wiring, ends = whole[4 : 4 + 2 * S].reshape(S, 2), whole[4 + 2 * S : d]
+    leaves, entries, gains = tables[:e], tables[e : e + k * n], tables[e + k * n :]
+    return (
+        (numbers[: 14 * S].reshape(S, 14), wiring, ends, numbers[14 * S : a].reshape(1, 12)),
+        (numbers[a : a + n], numbers[a + n : b], whole[d : d + n]),
+        (leaves.reshape(L, 9, LEAF), entries.reshape(k, n), gains.reshape(k, n, 6), numbers[b]),
+        (numbers[b + 1 : b + 1 + nq], numbers[b + 1 + nq : c]),
+        whole[d + n : d + 3 * n].reshape(n, 2),
+        numbers[c : c + 8],
+    )
+
+
+@inline
+def out_of_reach(task: Floats, reach: Floats) -> bool:
+    """Whether every pose in the tolerances is proved to be farther away, or nearer, than the links can span."""
+    square = lever = 0.0
+    for i in range(3):  # the tip's point in the target frame, less the world's point there
+        away = reach[3 + i] - task[9 + i]
+        for j in range(3):
+            away -= task[3 * i + j] * reach[j]
+        square += away * away
+        lever += reach[3 + i] * reach[3 + i]
+    distance = math.sqrt(square)
+    allowed = ROUNDING + task[24] + (math.sqrt(lever) * task[25] if lever > 0.0 else 0.0)
+    return bool(distance > reach[7] + 1.01 * allowed or distance < reach[6] - 1.01 * allowed)
+
+
 @jit(
-    f"void({PATHS}, {BOUNDS}, {ATLAS}, f8[::1], f8[::1], i8[:,::1], f8[:,::1], f8, f8, i8, i8, f8, f8, "
+    "void(f8[::1], i8[::1], f4[::1], i8[:,::1]?, f8[:,::1], f8, f8, i8, i8, f8, f8, "
     "f8[:,:,::1], f8[:,::1], f8[:,::1], i8[:,::1])"
 )
 def solve_poses(
-    joints: Floats,
-    wiring: Ints,
-    ends: Ints,
-    tips: Floats,
-    lower: Floats,
-    upper: Floats,
-    winds: Ints,
-    leaves: Floats,
-    entries: Floats,
-    scale: float,
-    least: Floats,
-    most: Floats,
-    places: Ints,
+    numbers: Floats,
+    whole: Ints,
+    tables: Singles,
+    rows: Ints | None,
     starts: Floats,
     damping: float,
     progress: float,
@@ -70,23 +123,20 @@ def solve_poses(
     q: Floats,
     ended: Ints,
 ) -> None:
-    """``search`` for the poses (k, 4, 4) of one tip, each on its own; orientation is free where ``aligned`` is inf.
+    """``search`` for the poses (k, 4, 4) of one tip, each on its own; with the rows ``POSITION``, for their positions.
 
-    What ``search`` does not have: ``least`` and ``most`` (nq,) limit every entry of q; ``places`` (n, 2) is where in q
-    a coordinate is and whether it is a pair (cos, sin); ``near`` and ``aligned`` are the tolerances, m and rad; q0
+    ``numbers``, ``whole`` and ``tables`` are the packed chain; ``near`` and ``aligned`` the tolerances, m and rad; q0
     (k, nq) is where to start from and what other joints keep. Row i of q (k, nq) and of ``ended`` (k, 2), evaluations
-    and one of SOLVED, UNSOLVED, NO_POSE, NO_START, is written.
+    and one of SOLVED, UNSOLVED, NO_POSE, NO_START, is written. What is proved to be out of reach is UNSOLVED at once.
     """
-    n = lower.shape[0]
-    free = not aligned < np.inf
-    tasks, rows = np.zeros((1, 26)), np.zeros((3 if free else 6, 2), np.int64)
-    for j in range(rows.shape[0]):
-        rows[j, 1] = j
-    tasks[0, 15:18] = np.inf if free else 0.0
+    arm, bounds, atlas, (least, most), places, reach = unpack(numbers, whole, tables)
+    n = bounds[0].shape[0]
+    tasks = np.zeros((1, 26))
+    tasks[0, 15:18] = 0.0 if rows is None else np.inf
     tasks[0, 18:24] = 1.0
     tasks[0, 24], tasks[0, 25] = 0.999 * near, 0.999 * aligned
-    work = workspace(n, rows.shape[0], joints.shape[0])
-    own, best = starts.copy(), np.empty(n)
+    work, looks = workspace(n, rows, arm[0].shape[0]), lookup_space(n, 1)
+    guess, best = np.empty(n), np.empty(n)
     for i in range(targets.shape[0]):
         ended[i, 0] = 0
         if not is_pose(targets[i]):
@@ -101,19 +151,14 @@ def solve_poses(
             continue
         for c in range(n):
             e = places[c, 0]
-            own[0, c] = math.atan2(q[i, e + 1], q[i, e]) if places[c, 1] == 1 else q[i, e]
+            guess[c] = math.atan2(q[i, e + 1], q[i, e]) if places[c, 1] == 1 else q[i, e]
         task_of(targets[i], tasks[0])
+        if out_of_reach(tasks[0], reach):
+            ended[i, 1] = UNSOLVED
+            continue
+        settings = damping, progress, per_start
         spent, solved_by = search(
-            (joints, wiring, ends, tips),
-            tasks,
-            rows,
-            (lower, upper, winds),
-            (leaves, entries, scale),
-            own,
-            (damping, progress, per_start),
-            evaluations,
-            best,
-            work,
+            arm, tasks, rows, bounds, atlas, guess, starts, settings, evaluations, best, work, looks
         )
         ended[i, 0] = spent
         ended[i, 1] = SOLVED if solved_by >= 0 else UNSOLVED
@@ -123,3 +168,22 @@ def solve_poses(
                 q[i, e], q[i, e + 1] = math.cos(best[c]), math.sin(best[c])
             else:
                 q[i, e] = min(max(best[c], least[e]), most[e])
+
+
+@jit("void(f8[:,:,::1], f8[:,:,::1], f8[:,::1])")
+def distances(targets: Floats, reached: Floats, out: Floats) -> None:
+    """Distance (m) and angle (rad), out (k, 2), of poses reached (k, 4, 4) from their targets."""
+    for i in range(targets.shape[0]):
+        A, B = targets[i], reached[i]
+        square = cos = 0.0
+        for r in range(3):
+            square += (B[r, 3] - A[r, 3]) ** 2
+            for c in range(3):
+                cos += A[r, c] * B[r, c]
+        x = y = z = 0.0
+        for r in range(3):
+            x += A[r, 2] * B[r, 1] - A[r, 1] * B[r, 2]
+            y += A[r, 0] * B[r, 2] - A[r, 2] * B[r, 0]
+            z += A[r, 1] * B[r, 0] - A[r, 0] * B[r, 1]
+        out[i, 0] = math.sqrt(square)
+        out[i, 1] = math.atan2(math.sqrt(x * x + y * y + z * z), cos - 1.0)

@@ -81,6 +81,15 @@ class Limits:
                 upper[i] = lower[i] + 2.0 * np.pi
         return Box(lower, upper)
 
+    def one_turn(self) -> Limits:
+        """The same limits, but no winding angle with more than the turn in the middle of its range."""
+        spare = np.maximum(0.5 * (self.upper - self.lower) - np.pi, 0.0)
+        wide = self.winds & np.isfinite(spare)
+        lower, upper = self.lower.copy(), self.upper.copy()
+        lower[wide] += spare[wide]
+        upper[wide] -= spare[wide]
+        return Limits(lower, upper, self.velocity, self.rotates, self.winds, self.names)
+
     def clip(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """The nearest coordinates inside the limits; periodic ones are left as they are."""
         return np.minimum(np.maximum(x, self.lower), self.upper)

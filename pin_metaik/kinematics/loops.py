@@ -1,17 +1,22 @@
 """The compiled loops under one roof. Importing it takes half a second: ``Chain`` does so when the first one is made."""
 
+from pin_metaik.kinematics.guesses import gains_of
 from pin_metaik.kinematics.kernels import costs, poses
-from pin_metaik.kinematics.lane import SOLVED, UNSOLVED, solve_poses
+from pin_metaik.kinematics.lane import POSITION, SOLVED, UNSOLVED, distances, pack, solve_poses
 from pin_metaik.kinematics.searches import descend, descend_all, linearize, neighbours
 
 __all__ = [
+    "POSITION",
     "SOLVED",
     "UNSOLVED",
     "costs",
     "descend",
     "descend_all",
+    "distances",
+    "gains_of",
     "linearize",
     "neighbours",
+    "pack",
     "poses",
     "solve_poses",
 ]

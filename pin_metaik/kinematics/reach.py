@@ -47,6 +47,11 @@ class Reach:
     least: float
     most: float
 
+    @property
+    def array(self) -> NDArray[np.float64]:
+        """(8,) all of it, as the fast lane takes it."""
+        return np.array([*self.anchor, *self.end, self.least, self.most])
+
     def gap(self, pose: pin.SE3, distance: float = 0.0, angle: float = 0.0) -> float:
         """How far (m) every configuration is from a pose, at least; 0 proves nothing.
 

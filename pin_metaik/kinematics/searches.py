@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
-
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, inline, jit, shared
+from pin_metaik.compiled import Floats, Ints, Singles, inline, jit, shared
+from pin_metaik.kinematics.atlas import LEAF
 from pin_metaik.kinematics.descent import Arm, Bounds, Settings, Work, descend_from, evaluate, workspace
-from pin_metaik.kinematics.kernels import PATHS, forward
-
-ATLAS = "f8[:,:,::1], f8[:,::1], f8"  # leaves, entries, scale
-
-Atlas: TypeAlias = tuple[Floats, Floats, float]  # leaves, entries, scale
+from pin_metaik.kinematics.guesses import (
+    ATLAS,
+    TRIED,
+    Atlas,
+    Looks,
+    feature_distance,
+    lookup_space,
+    merge_nearest,
+    suggest,
+    target_feature,
+)
+from pin_metaik.kinematics.kernels import PATHS, copy
 
 TURN = 2.0 * np.pi
-IDENTITY = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-
-LEAF, OPENED, TRIED = 64, 4, 6  # entries in a leaf of the atlas, leaves opened, entries tried before the given starts
 
 
 @jit(f"Tuple((f8, b1))({PATHS}, f8[:,::1], i8[:,::1], f8[::1], f8[::1], f8[:,::1])")
@@ -33,57 +36,12 @@ def linearize(
     J: Floats,
 ) -> tuple[float, bool]:
     """Weighted residual r (m,) and Jacobian by coordinate J (n, m) at x; also |r|^2 and whether all is in tolerance."""
-    work = workspace(x.shape[0], rows.shape[0], joints.shape[0])
+    work = workspace(x.shape[0], rows, joints.shape[0])
     square, met = evaluate((joints, wiring, ends, tips), tasks, rows, x, work)
-    r[:], J[:, :] = work[8], work[9]
+    copy(work[6], r)
+    for c in range(x.shape[0]):
+        copy(work[7][c], J[c])
     return square, met
-
-
-@inline
-def target_feature(tasks: Floats, scale: float, goal: Floats, weights: Floats) -> None:
-    """Feature (9 T,) of the targets as the atlas has it, and weight 0 where they leave position or orientation free."""
-    for t in range(tasks.shape[0]):
-        task, at = tasks[t], 9 * t
-        placed = task[12] < np.inf and task[13] < np.inf and task[14] < np.inf
-        turned = task[15] < np.inf and task[16] < np.inf and task[17] < np.inf
-        for j in range(3):
-            goal[at + j] = -(task[j] * task[9] + task[3 + j] * task[10] + task[6 + j] * task[11])
-            goal[at + 3 + j] = scale * task[j]
-            goal[at + 6 + j] = scale * task[6 + j]
-            weights[at + j] = 1.0 if placed else 0.0
-            weights[at + 3 + j] = weights[at + 6 + j] = 1.0 if turned else 0.0
-
-
-@inline
-def merge_nearest(
-    leaf: Floats, number: int, goal: Floats, weights: Floats, away: Floats, found: Ints, distances: Floats
-) -> None:
-    """Merge the columns of a leaf (9 T, LEAF) into the nearest found so far, nearest first."""
-    away[:] = 0.0
-    for j in range(0, goal.shape[0], 3):  # three rows at a time: a third of the loads and stores
-        f, g, h = goal[j], goal[j + 1], goal[j + 2]
-        for i in range(LEAF):
-            away[i] += weights[j] * ((leaf[j, i] - f) ** 2 + (leaf[j + 1, i] - g) ** 2 + (leaf[j + 2, i] - h) ** 2)
-    last = distances.shape[0] - 1
-    for i in range(LEAF):
-        if away[i] < distances[last]:
-            k = last
-            while k > 0 and distances[k - 1] > away[i]:
-                distances[k], found[k] = distances[k - 1], found[k - 1]
-                k -= 1
-            distances[k], found[k] = away[i], number * LEAF + i
-
-
-@inline
-def look_up(leaves: Floats, goal: Floats, weights: Floats, found: Ints, distances: Floats) -> None:
-    """The atlas entries nearest to the goal: found (TRIED,), nearest first, with their squared distances."""
-    away = np.empty(LEAF)
-    opened, spans = np.empty(OPENED, np.int64), np.full(OPENED, np.inf)
-    merge_nearest(leaves[0], 0, goal, weights, away, opened, spans)
-    distances[:] = np.inf
-    for k in range(OPENED):
-        leaf = opened[k]
-        merge_nearest(leaves[1 + leaf], leaf, goal, weights, away, found, distances)
 
 
 @inline
@@ -101,80 +59,73 @@ def unwind(x: Floats, x0: Floats, bounds: Bounds) -> None:
 def search(
     arm: Arm,
     tasks: Floats,
-    rows: Ints,
+    rows: Ints | None,
     bounds: Bounds,
     atlas: Atlas,
+    guess: Floats,
     starts: Floats,
     settings: Settings,
     evaluations: int,
     best: Floats,
     work: Work,
+    looks: Looks,
 ) -> tuple[int, int]:
     """Descend from one start after the other until one meets the tolerances or the evaluations are spent.
 
-    The starts are the entries of the atlas nearest to the target, if there is one, and ``starts`` (s, n). The first of
-    those is somebody's guess: it goes before the entries when its pose is nearer, otherwise after them.
+    The starts are somebody's guess (n,), those that the atlas suggests, if there is one, and ``starts`` (s, n). The
+    guess goes first when its pose is nearer to the target than the poses in the atlas, otherwise after them.
 
     Returns the evaluations spent and the number of the start that met them, or -1; ``best`` (n,) gets the coordinates.
     """
-    leaves, entries, scale = atlas
-    T = tasks.shape[0]
-    tried = TRIED if leaves.shape[0] > 0 else 0
+    tried = TRIED if atlas[0].shape[0] > 0 else 0
+    suggested, goal, weights = looks[0], looks[1], looks[2]
     own = 0
-    order, distances = np.empty(TRIED, np.int64), np.empty(TRIED)
     if tried > 0:
-        goal, weights = np.empty(9 * T), np.empty(9 * T)
-        target_feature(tasks, scale, goal, weights)
-        look_up(leaves, goal, weights, order, distances)
-        joints, wiring, ends, tips = arm
-        axes, origins, pose = work[0], work[1], work[2]
-        away = 0.0
-        for t in range(T):
-            forward(joints, wiring, ends[t], ends[t + 1], tips[t], IDENTITY, starts[0], axes, origins, pose)
-            for j in range(3):
-                away += weights[9 * t + j] * (goal[9 * t + j] - pose[9 + j]) ** 2
-                away += weights[9 * t + 3 + j] * (goal[9 * t + 3 + j] - scale * pose[3 * j]) ** 2
-                away += weights[9 * t + 6 + j] * (goal[9 * t + 6 + j] - scale * pose[3 * j + 2]) ** 2
-        own = 0 if away <= distances[0] else TRIED
+        target_feature(tasks, atlas[3], goal, weights)
+        nearest = suggest(tasks, rows, bounds, atlas, work, looks)
+        own = 0 if feature_distance(arm, guess, atlas[3], goal, weights, work) <= nearest else tried
     lower, upper, _ = bounds
     for c in range(best.shape[0]):
-        best[c] = min(max(starts[0, c], lower[c]), upper[c])
+        best[c] = min(max(guess[c], lower[c]), upper[c])
     spent = 0
     least = np.inf
-    for k in range(tried + starts.shape[0]):
+    for k in range(1 + tried + starts.shape[0]):
         if spent >= evaluations:
             break
         if k == own:
-            start = starts[0]
+            start = guess
         elif k <= tried:
-            start = entries[order[k - 1 if own == 0 else k]]
+            start = suggested[k - 1 if own == 0 else k]
         else:
-            start = starts[k - tried]
+            start = starts[k - tried - 1]
         steps, met, least = descend_from(
             arm, tasks, rows, bounds, start, settings, evaluations - spent, least, best, work
         )
         spent += steps
         if met:
-            unwind(best, starts[0], bounds)
+            unwind(best, guess, bounds)
             return spent, k
     return spent, -1
 
 
 @jit(f"void(f8[:,::1], {ATLAS}, i8, f8[:,::1])")
-def neighbours(tasks: Floats, leaves: Floats, entries: Floats, scale: float, count: int, out: Floats) -> None:
+def neighbours(
+    tasks: Floats, leaves: Singles, entries: Singles, gains: Singles, scale: float, count: int, out: Floats
+) -> None:
     """The ``count`` atlas entries (count, n) nearest to the targets, nearest first."""
     T = tasks.shape[0]
-    goal, weights, away = np.empty(9 * T), np.empty(9 * T), np.empty(LEAF)
+    goal, weights, away = np.empty(9 * T, np.float32), np.empty(9 * T, np.float32), np.empty(LEAF, np.float32)
     target_feature(tasks, scale, goal, weights)
-    order, distances = np.zeros(count, np.int64), np.full(count, np.inf)
+    order, distances = np.zeros(count, np.int64), np.empty(count, np.float32)
+    distances[:] = np.inf
     for leaf in range(leaves.shape[0] - 1):
         merge_nearest(leaves[1 + leaf], leaf, goal, weights, away, order, distances)
     for k in range(count):
-        out[k] = entries[order[k]]
+        copy(entries[order[k]], out[k])
 
 
 BOUNDS = "f8[::1], f8[::1], i8[::1]"  # lower, upper, winds
-PROBLEM = f"{PATHS}, f8[:,::1], i8[:,::1], {BOUNDS}"  # ..., tasks, rows, ...
+PROBLEM = f"{PATHS}, f8[:,::1], i8[:,::1]?, {BOUNDS}"  # ..., tasks, rows, ...
 SETTINGS = "f8, f8, i8, i8"  # damping, progress, evaluations from one start, evaluations
 
 
@@ -185,12 +136,13 @@ def descend(
     ends: Ints,
     tips: Floats,
     tasks: Floats,
-    rows: Ints,
+    rows: Ints | None,
     lower: Floats,
     upper: Floats,
     winds: Ints,
-    leaves: Floats,
-    entries: Floats,
+    leaves: Singles,
+    entries: Singles,
+    gains: Singles,
     scale: float,
     starts: Floats,
     damping: float,
@@ -199,19 +151,21 @@ def descend(
     evaluations: int,
     best: Floats,
 ) -> tuple[int, int]:
-    """``search`` for one problem."""
-    work = workspace(lower.shape[0], rows.shape[0], joints.shape[0])
+    """``search`` for one problem; the first of the starts (s, n) is the guess."""
+    n = lower.shape[0]
     return search(
         (joints, wiring, ends, tips),
         tasks,
         rows,
         (lower, upper, winds),
-        (leaves, entries, scale),
-        starts,
+        (leaves, entries, gains, scale),
+        starts[0],
+        starts[1:],
         (damping, progress, per_start),
         evaluations,
         best,
-        work,
+        workspace(n, rows, joints.shape[0]),
+        lookup_space(n, tasks.shape[0]),
     )
 
 
@@ -237,7 +191,7 @@ def descend_all(
     ends: Ints,
     tips: Floats,
     tasks: Floats,
-    rows: Ints,
+    rows: Ints | None,
     lower: Floats,
     upper: Floats,
     winds: Ints,
@@ -259,20 +213,20 @@ def descend_all(
     moved by pi, which is where others often are. Returns evaluations, solutions and the length of the last vain row.
     """
     n = lower.shape[0]
-    work = workspace(n, rows.shape[0], joints.shape[0])
+    work = workspace(n, rows, joints.shape[0])
     x, start = np.empty(n), np.empty(n)
     spent, count, vain = 0, known, 0
     turned = n * known  # half-turn starts already taken: joint turned % n of solution turned // n
     given = 0
     while spent < evaluations and count < solutions.shape[0] and vain < patience:
         if branch and turned < n * count:
-            start[:] = solutions[turned // n]
+            copy(solutions[turned // n], start)
             c = turned % n
             turned += 1
             start[c] += -np.pi if start[c] + np.pi > upper[c] else np.pi
             start[c] = min(max(start[c], lower[c]), upper[c])
         elif given < starts.shape[0]:
-            start[:] = starts[given]
+            copy(starts[given], start)
             given += 1
         else:
             break
@@ -292,7 +246,7 @@ def descend_all(
         if met:
             vain += 1
             if is_new(x, solutions, count, winds, apart):
-                solutions[count] = x
+                copy(x, solutions[count])
                 count += 1
                 vain = 0
     return spent, count, vain

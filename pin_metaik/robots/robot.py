@@ -90,12 +90,17 @@ def robot_names() -> list[RobotName]:
 
 
 def load_robot(
-    name: str | Path, *, parameters: Mapping[str, float] | None = None, free_flyer: bool = False, mimic: bool = True
+    name: str | Path | RobotName,
+    *,
+    parameters: Mapping[str, float] | None = None,
+    free_flyer: bool = False,
+    mimic: bool = True,
 ) -> Robot:
     """Load a robot.
 
     Args:
-        name: Name in the catalogue or in example-robot-data, or path of a ``.urdf`` or of a DH table's ``.toml``.
+        name: Name in the catalogue or in example-robot-data (also as ``robot_names`` gives it), or path of a ``.urdf``
+            or of a DH table's ``.toml``.
         parameters: Values that replace those of a DH table's ``[parameters]``, in the table's units.
         free_flyer: Put the base on a free-flyer (six more coordinates); otherwise it is fixed.
         mimic: Make joints with a mimic tag scaled copies of the joint they follow instead of coordinates of their own
@@ -108,7 +113,7 @@ def load_robot(
         InvalidModel: If the file is missing, is not a URDF, or no joint of it moves anything.
         InvalidBounds: If a joint's lower limit is above its upper one.
     """
-    label, path, srdf = _locate(name)
+    label, path, srdf = _locate(name.name if isinstance(name, RobotName) else name)
     if path.suffix.lower() == ".toml":
         table = read_table(path, parameters)
         label, urdf = label or table.name, to_urdf(table)
@@ -123,6 +128,8 @@ def load_robot(
 
 def _locate(name: str | Path) -> tuple[str, Path, Path | None]:
     """Label (empty for a path), file and SRDF of a robot."""
+    if not isinstance(name, (str, Path)):
+        raise InvalidModel(f"a robot is a name or a path, got {name!r}")
     path = Path(name).expanduser()
     if isinstance(name, Path) or len(path.parts) > 1 or path.suffix.lower() in (".urdf", ".toml"):
         if path.suffix.lower() not in (".urdf", ".toml"):

@@ -89,3 +89,18 @@ def test_the_same_seed_gives_the_same_targets(part: Callable[[str], ModuleType])
         assert_array_equal(one.poses, again.poses)
         assert_array_equal(one.starts, again.starts)
         assert (one.poses != other.poses).any()
+
+
+def test_the_guarantees_are_counted_on_a_few_poses(tmp_path: Path) -> None:
+    out = tmp_path / "guarantees.md"
+    command = [sys.executable, str(BENCHMARKS / "ik_guarantees.py"), "--poses", "3", "--out", str(out)]
+    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    page = out.read_text()
+    assert "farther than the nearest of all: 0;" in page
+    assert page.count("200 met") == 4
+    assert "0 jumps not reported" in page
+    assert "| the same bits |" in page
+    assert "6 solved" in page
+    assert "0 answers past a limit" in page

@@ -3,7 +3,7 @@
 import numpy as np
 import pinocchio as pin
 import pytest
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 
 import pin_metaik as mik
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting, InvalidTarget
@@ -29,6 +29,22 @@ def test_a_batch_is_what_each_target_gets_alone_for_any_number_of_workers(name: 
         assert alone.status is one[i].status
         assert alone.evaluations == one[i].evaluations
         assert one[i].verify() == one[i].success
+
+
+@pytest.mark.parametrize("name", ["ur5", "tiago"])  # tiago's other limbs are left out of Pinocchio's computation
+def test_the_errors_of_a_batch_are_pinocchios(name: str) -> None:
+    chain = chain_of(name)
+    rng = np.random.default_rng(1)
+    q = chain.q(chain.box.sample(rng, 30))
+    for turn in (1e-9, 1e-6, 1e-3, 1.0, np.pi - 1e-6):
+        for one in q:
+            offset = pin.SE3(pin.exp3(turn * pin.exp3(rng.normal(size=3))[0]), 1e-6 * rng.normal(size=3))
+            goal = chain.placements(one)[0] * offset
+            out = np.empty((1, 2))
+            reached = chain.place(chain.data, one).homogeneous
+            chain.kernels.distances(goal.homogeneous[None], reached[None], out)
+            # Entries of order 1, of a product of ten rotations, are rounded to 1e-16 each.
+            assert_allclose(out[0], [np.linalg.norm(offset.translation), turn], atol=3e-15)
 
 
 def test_positions_and_lists_of_targets_are_batches_too() -> None:

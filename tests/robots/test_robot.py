@@ -276,3 +276,11 @@ def test_a_continuous_joint_can_only_follow_and_be_followed_by_its_like(followed
     robot = load_robot(write(follower(followed, kind)))
     assert robot.model.nv == (1 if held else 2)
     assert robot.free_mimics == (() if held else ("k",))
+
+
+def test_whatever_is_listed_can_be_loaded_as_it_is_listed() -> None:
+    listed = robot_names()
+    first, last = load_robot(listed[0]), load_robot(listed[-1])
+    assert (first.name, last.name) == (listed[0].name, listed[-1].name)
+    with pytest.raises(InvalidModel, match="a name or a path, got 7"):
+        load_robot(7)  # type: ignore[arg-type]

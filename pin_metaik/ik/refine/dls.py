@@ -65,7 +65,7 @@ class DLS:
         spent, solved_by = chain.kernels.descend(
             *chain.paths.arrays,
             problem.tasks,
-            problem.rows,
+            problem.descended,
             *chain.limits.arrays,
             *atlas.arrays,
             starts,
