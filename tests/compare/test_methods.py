@@ -56,15 +56,15 @@ def test_those_that_should_solve_a_random_pose_do(name: str) -> None:
 
 
 def test_a_step_with_a_jacobian_is_paid_for_as_measured() -> None:
-    assert 1.43 <= FK_WITH_JACOBIAN <= 1.5
-    assert [price_of(steps) for steps in (0, 1, 2, 3)] == [0, 2, 3, 5]
+    assert 1.16 <= FK_WITH_JACOBIAN <= 1.2
+    assert [price_of(steps) for steps in (0, 1, 2, 3, 5)] == [0, 2, 3, 4, 6]
     assert all(price_of(steps_within(budget)) <= budget for budget in range(1, 200))
 
 
 def test_a_refiner_gets_what_its_budget_pays_for_and_a_rest_is_written_off() -> None:
     problem, refiner = problem_of("ur5", 0), make_refiner("lm_chan")
     starts = problem.box.sample(np.random.default_rng(0), 1)
-    plain, priced = refiner.refine(problem, starts, 10), Priced(refiner).refine(problem, starts, 15)
+    plain, priced = refiner.refine(problem, starts, 10), Priced(refiner).refine(problem, starts, 12)
     assert_array_equal(priced.x, plain.x)
     assert priced.evaluations == price_of(plain.evaluations)
     broke = Priced(refiner).refine(problem, starts, 1)
