@@ -1,18 +1,23 @@
 """What the mobile planners take and reach, longer than the tests can wait for.
 
-    pip install -e '.[mobile]'
-    python benchmarks/mobile.py [--runs 20] [--seeds 5] [--out benchmarks/mobile.md]
+    pip install -e '.[mobile,plots]'
+    python benchmarks/mobile.py --out benchmarks/mobile.md
 
-Half an hour with the defaults; ``--runs 3 --seeds 1 --iterations 300`` is a minute. Times are processor time of this
-process, so that a busy machine does not count; ratios mean more than digits.
+An hour, most of it for the networks of the paper on learned turns; ``--quick`` takes a minute. Reports that are there
+already are not made again. Times on the page are processor time of this process, so that a busy machine does not count;
+ratios mean more than digits.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
 import datetime
 import os
 import platform
+import re
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -23,9 +28,8 @@ import shapely
 
 from pin_metaik import mobile
 from pin_metaik.learn import fit
-from pin_metaik.mobile.motion.learned import learn_turn
 from pin_metaik.mobile.motion.turn import lead_time
-from pin_metaik.mobile.motion.turn_data import clustered_points, coarse_grid, fine_grid, judging_points
+from pin_metaik.mobile.motion.turn_data import clustered_points, coarse_grid, fine_grid
 from pin_metaik.optimize import Budget
 from pin_metaik.optimize.de import DE
 from pin_metaik.optimize.ga import GA
@@ -45,8 +49,8 @@ def cpu(work: Callable[[], object], repeats: int = 5) -> float:
     return median(times)
 
 
-def table(heading: list[str], rows: list[list[object]]) -> str:
-    lines = [heading, ["---"] + ["---:"] * (len(heading) - 1), *rows]
+def table(heading: list[str], rows: list[list[object]], numbers: str = "---:") -> str:
+    lines = [heading, ["---"] + [numbers] * (len(heading) - 1), *rows]
     return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
 
 
@@ -143,7 +147,7 @@ def trajectories(scenes: int) -> Iterator[str]:
         worst_clearance = min(worst_clearance, *(plan.clearance - plan.radius for plan in (dp, de, fast)))
         worst_end = max(worst_end, *(plan.end_error for plan in (dp, de, fast)))
         assert dp.success and de.success and fast.success
-        times = (dp.stop_and_turn, dp.time, 100 * (de.time / dp.time - 1), fast.time)
+        times = (dp.stop_and_turn, dp.time, max(0.0, 100 * (de.time / dp.time - 1)), fast.time)
         rows.append([seed - 1, len(dp.v), *(f"{value:.3f}" for value in times), f"{ms:.1f}"])
     yield "\n\n## Trajectories of the Nomad 200 through 15 random obstacles\n"
     yield (
@@ -157,81 +161,61 @@ def trajectories(scenes: int) -> Iterator[str]:
     )
 
 
-def networks(seeds: int, iterations: int) -> Iterator[str]:
+def times() -> Iterator[str]:
     vehicle = mobile.NOMAD_200
-    began = time.process_time()
-    fcm = clustered_points(vehicle, iterations=150).centres
-    clustering = time.process_time() - began
-    rows = []
-    for hidden in ((5,), (5, 5)):
-        for name, points in (("grid", coarse_grid(vehicle)), ("fcm", fcm)):
-            began = time.process_time()
-            models = [
-                learn_turn(vehicle, design="paper", hidden=hidden, points=points, iterations=iterations, rng=seed)
-                for seed in range(seeds)
-            ]
-            seconds = (time.process_time() - began) / seeds
-            errors = [model.errors() for model in models]
-            E0 = sorted(e.E0 for e in errors)
-            cells = [f"{median(E0):.3f}", f"{E0[0]:.3f} .. {E0[-1]:.3f}", f"{median(e.F0 for e in errors):.4f}"]
-            cells += [f"{median(e.Fm for e in errors):.2f}", f"{median(m.regressor.training.mse for m in models):.1e}"]
-            rows.append([":".join(map(str, (2, *hidden, 1))), name, *cells, f"{seconds:.1f}"])
-    yield f"\n\n## Networks: Levenberg-Marquardt, {iterations:,} iterations, {seeds} starts, the paper's design\n"
-    yield (
-        "Errors over the 23,621 test vectors in percent, medians: E0 relative mean, F0 and Fm mean and largest share "
-        "of the longest tangent; training error; s a training.\n"
-    )
-    yield table(["net", "points", "E0", "E0 least .. most", "F0", "Fm", "mse", "s"], rows)
-    yield f"\n\nFuzzy c-means of 23,779 points to 1,064 centres, 150 iterations: {clustering:.0f} s.\n"
-
-    v, theta = coarse_grid(vehicle).T
+    grid, (v, theta) = fine_grid(vehicle), coarse_grid(vehicle).T
     X, y = np.column_stack((v, theta)), v * lead_time(theta, vehicle)
-    judged = judging_points(vehicle)
-    true = judged[:, 0] * lead_time(judged[:, 1], vehicle)
-    rows = []
-    for trainer in ("lm", "minpack", "bfgs", "scg", "rprop"):
-        began = time.process_time()
-        models = [fit(X, y, (5, 5), trainer, iterations, seed) for seed in range(seeds)]
-        seconds = (time.process_time() - began) / seeds
-        E0 = median(float(100 * np.mean(np.abs(m.predict(judged) - true) / true)) for m in models)
-        rows.append([trainer, f"{median(m.training.mse for m in models):.1e}", f"{E0:.3f}", f"{seconds:.1f}"])
-    yield "\nTrainers of 2:5:5:1 on the grid, the same starts:\n"
-    yield table(["trainer", "mse", "E0", "s"], rows)
+    cluster = cpu(lambda: clustered_points(vehicle, iterations=10), 1)
+    rows = [
+        ["23,779 tangent lengths, closed form", cpu(lambda: grid[:, 0] * lead_time(grid[:, 1], vehicle), 20)],
+        ["3,000 iterations of Levenberg-Marquardt, 2:5:5:1", 10 * cpu(lambda: fit(X, y, (5, 5), "lm", 300), 3)],
+        ["150 iterations of fuzzy c-means, 23,779 points, 1,064 centres", 15 * cluster],
+    ]
+    yield "\n\n## Other times\n"
+    yield table(["work", "ms"], [[work, f"{ms:,.1f}"] for work, ms in rows])
 
 
-def tangents() -> Iterator[str]:
-    grid, vehicle = fine_grid(mobile.NOMAD_200), mobile.NOMAD_200
-    closed = cpu(lambda: grid[:, 0] * lead_time(grid[:, 1], vehicle), 20)
-    yield f"\n\n## The closed form\n\n23,779 tangent lengths take {closed:.2f} ms.\n"
+def papers(folder: Path, quick: bool) -> Iterator[str]:
+    yield "\n\n## The papers\n"
+    yield "Tables next to the printed ones, figures, and every run: the linked reports."
+    for name, extra in (("path_planning", ["--runs", "100"]), ("trajectory", ["--long"])):
+        arguments = ["reproduce", name, *(["--quick", "--runs", "2"] if quick else extra)]
+        shown = [*arguments, "--out", str(folder)]
+        if not (folder / f"{name}.md").exists():
+            subprocess.run([sys.executable, "-m", "pin_metaik", *shown], check=True, stdout=subprocess.DEVNULL)
+        with (folder / f"{name}_claims.csv").open(encoding="utf-8") as file:
+            heading, *rows = csv.reader(file)
+        yield f"\n`pin-metaik {' '.join(arguments)}`: [{name}]({folder.name}/{name}.md).\n"
+        yield table(heading, rows, numbers="---")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--runs", type=int, default=20)
-    parser.add_argument("--scenes", type=int, default=10)
-    parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--iterations", type=int, default=3000)
-    parser.add_argument("--out", type=Path)
+    parser.add_argument(
+        "--out", type=Path, required=True, help="the page; the papers' reports go to a folder beside it"
+    )
+    parser.add_argument("--quick", action="store_true", help="a few runs of everything")
     options = parser.parse_args()
+    folder = options.out.with_suffix("")
     parts = [
         "# Mobile planners\n",
-        f"`python benchmarks/mobile.py --runs {options.runs} --scenes {options.scenes} --seeds {options.seeds} "
-        f"--iterations {options.iterations}`, {datetime.date.today()}, {os.cpu_count()}-core {platform.machine()}, "
-        f"shapely {shapely.__version__}.\n",
+        f"`python benchmarks/mobile.py --out {options.out}{' --quick' * options.quick}`, {datetime.date.today()}, "
+        f"{os.cpu_count()}-core {platform.machine()}, shared; shapely {shapely.__version__}.\n",
     ]
+    few = options.quick
     for part in (
         exact_times(),
-        planners(options.runs),
-        trajectories(options.scenes),
-        networks(options.seeds, options.iterations),
-        tangents(),
+        planners(2 if few else 20),
+        trajectories(2 if few else 10),
+        times(),
+        papers(folder, few),
     ):
         for text in part:
             print(text, flush=True)
             parts.append(text)
         parts.append("")
-    if options.out is not None:
-        options.out.write_text("\n".join(parts).replace("\n\n\n", "\n\n") + "\n", encoding="utf-8")
+    page = re.sub("\n{3,}", "\n\n", "\n".join(parts)).rstrip() + "\n"
+    options.out.write_text(page, encoding="utf-8")
 
 
 if __name__ == "__main__":

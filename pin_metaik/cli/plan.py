@@ -47,7 +47,9 @@ def plan(
         float | None, typer.Option(help=f"To keep on top of that; default: 0, or {MARGIN} with a trajectory.")
     ] = None,
     join: Annotated[str, typer.Option(help="Corners of grown obstacles: mitre or round.")] = "mitre",
-    vehicle: Annotated[str, typer.Option(help="Whose limits the trajectory keeps.")] = "nomad200",
+    vehicle: Annotated[
+        str, typer.Option(help="Whose limits the trajectory keeps: nomad200, nomad200_driver, or a .json with others.")
+    ] = "nomad200",
     paths: Annotated[
         int, typer.Option(min=1, help="Homotopy classes to try; with a trajectory the quickest of them counts.")
     ] = 1,
@@ -85,11 +87,14 @@ def plan(
             callback=tick,
         )
     plans = mobile.plan_alternatives(problem, paths) if paths > 1 else [path]
-    motions = [_motion(each, robot, keep, trajectory, rng) for each in plans] if trajectory and path.success else []
+    motions = list(_motions(plans, robot, keep, trajectory, rng)) if trajectory and path.success else []
     best = min(range(len(motions)), key=lambda i: (not motions[i].success, motions[i].time), default=0)
     motion = motions[best] if motions else None
 
-    report: dict[str, Any] = {"path": plans[best].as_dict()}
+    found = plans[best].as_dict()
+    if len(plans) > 1:
+        found["alternatives"] = [each.as_dict() for i, each in enumerate(plans) if i != best]
+    report: dict[str, Any] = {"path": found}
     if motion is not None:
         report["trajectory"] = {key: value for key, value in motion.as_dict().items() if key != "samples"}
     if as_json:
@@ -97,7 +102,7 @@ def plan(
     else:
         _show(plans, motions, best)
     if out is not None:
-        for file in _write(out, world, plans[best], motion, figures):
+        for file in _write(out, plans, best, found, motion, figures):
             Console(stderr=as_json).print(str(file), markup=False, highlight=False, soft_wrap=True)
     raise typer.Exit(0 if path.success and (motion is None or motion.success) else 1)
 
@@ -114,21 +119,26 @@ def _scene(source: str, start: Place, goal: Place, clearance: float) -> Scene:
     return mobile.random_scene(int(count or 15), int(seed), gap=gap, start=start, goal=goal)
 
 
-def _motion(plan: PathPlan, robot: SynchroDrive, radius: float, method: str, rng: int) -> TrajectoryPlan:
+def _motions(
+    plans: list[PathPlan], robot: SynchroDrive, radius: float, method: str, rng: int
+) -> Iterator[TrajectoryPlan]:
     from pin_metaik import mobile
     from pin_metaik.learn import OutsideTraining
 
-    with _progress("trajectory") as tick, warnings.catch_warnings():
-        warnings.simplefilter("ignore", OutsideTraining)  # the plan's notes say it
-        return mobile.plan_trajectory(
-            plan.path,
-            robot,
-            plan.problem.scene.obstacles,
-            method=method,  # type: ignore[arg-type]  # checked where it came in
-            radius=radius,
-            rng=rng,
-            callback=tick,
-        )
+    model = mobile.learn_turn(robot) if method == "ann" else None
+    for plan in plans:
+        with _progress("trajectory") as tick, warnings.catch_warnings():
+            warnings.simplefilter("ignore", OutsideTraining)  # the plan's notes say it
+            yield mobile.plan_trajectory(
+                plan.path,
+                robot,
+                plan.problem.scene.obstacles,
+                method=method,  # type: ignore[arg-type]  # checked where it came in
+                radius=radius,
+                rng=rng,
+                model=model,
+                callback=tick,
+            )
 
 
 @contextmanager
@@ -158,16 +168,20 @@ def _show(plans: list[PathPlan], motions: list[TrajectoryPlan], best: int) -> No
         console.print(f"quickest: path {best + 1}, {motions[best].time:.3f} s")
 
 
-def _write(folder: Path, scene: Scene, plan: PathPlan, motion: TrajectoryPlan | None, figures: bool) -> list[Path]:
+def _write(
+    folder: Path, plans: list[PathPlan], best: int, found: dict[str, Any], motion: TrajectoryPlan | None, figures: bool
+) -> list[Path]:
     from pin_metaik.mobile import plots
 
+    plan, scene = plans[best], plans[best].problem.scene
+    others = [each.path for each in plans if each is not plan]
     folder.mkdir(parents=True, exist_ok=True)
     names = ["scene.json", "path.json", "path.csv"]
     (folder / "scene.json").write_text(json.dumps(scene.as_dict()), encoding="utf-8")
-    (folder / "path.json").write_text(json.dumps(plan.as_dict(), allow_nan=False), encoding="utf-8")
+    (folder / "path.json").write_text(json.dumps(found, allow_nan=False), encoding="utf-8")
     plan.path.write(folder / "path.csv")
     if figures:
-        plots.save(folder / "path.png", lambda figure: plots.draw_plan(figure, plan))
+        plots.save(folder / "path.png", lambda figure: plots.draw_plan(figure, plan, others))
         names.append("path.png")
     if motion is not None:
         motion.trajectory.write_csv(folder / "trajectory.csv")

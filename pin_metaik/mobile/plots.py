@@ -68,22 +68,34 @@ def draw_scene(ax: Any, scene: Scene, region: shapely.Geometry | None = None) ->
     ax.set(xlim=(x_min - room, x_max + room), ylim=(y_min - room, y_max + room), aspect="equal")
 
 
-def draw_plan(figure: Any, plan: PathPlan) -> None:
-    """A planned path in its scene; a path that collides is red and says so."""
+def draw_plan(figure: Any, plan: PathPlan, others: Sequence[Path] = ()) -> None:
+    """A planned path in its scene, thin lines for others; a path that collides is red and says so."""
     ax = figure.subplots()
     problem = plan.problem
     draw_scene(ax, problem.scene, problem.space.region if problem.space.clearance else None)
+    for path in others:
+        ax.plot(*path.points.T, color=BLUE, linewidth=1, alpha=0.4)
     ax.plot(*plan.path.points.T, "-o", color=BLUE if plan.success else RED, linewidth=2, markersize=3)
     ax.set_title(
         f"{plan.problem.scene.name}, {plan.method}: length {plan.length:.4g}, {_verdict(plan)}", fontsize="medium"
     )
 
 
-def draw_runs(ax: Any, scene: Scene, runs: Sequence[Path], optimum: Path | None, colour: str = BLUE) -> None:
-    """Many runs over one another in their scene, and the shortest path dashed."""
+def draw_runs(
+    ax: Any,
+    scene: Scene,
+    runs: Sequence[Path],
+    optimum: Path | None,
+    colour: str = BLUE,
+    colliding: Sequence[Path] = (),
+) -> None:
+    """Many runs over one another in their scene, the shortest path dashed, and dotted what collides."""
     draw_scene(ax, scene)
+    alpha = max(0.08, min(0.6, 6 / max(len(runs) + len(colliding), 1)))
     for path in runs:
-        ax.plot(*path.points.T, color=colour, linewidth=0.7, alpha=max(0.08, min(0.6, 6 / max(len(runs), 1))))
+        ax.plot(*path.points.T, color=colour, linewidth=0.7, alpha=alpha)
+    for path in colliding:
+        ax.plot(*path.points.T, ":", color="black", linewidth=0.9, alpha=alpha)
     if optimum is not None:
         ax.plot(*optimum.points.T, "--", color="black", linewidth=1.4)
 
@@ -99,7 +111,9 @@ def draw_trajectory(figure: Any, plan: TrajectoryPlan, scene: Scene) -> None:
     for k in np.linspace(0, len(samples.t) - 1, 12).astype(int):
         world.add_patch(_disc(samples.xy[k], plan.radius))
     world.set(xlabel="x, m", ylabel="y, m")
-    world.set_title(f"{plan.method}: {plan.time:.2f} s ({plan.stop_and_turn:.2f} s with stops)", fontsize="medium")
+    verdict = "" if plan.success else ", collides" if not plan.collision_free else ", misses the goal"
+    said = f"{plan.method}: {plan.time:.2f} s ({plan.stop_and_turn:.2f} s with stops){verdict}"
+    world.set_title(said, fontsize="medium", color="black" if plan.success else RED)
 
     vehicle = plan.route.vehicle
     speed, turning, clear = (figure.add_subplot(grid[i, 1]) for i in range(3))

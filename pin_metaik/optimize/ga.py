@@ -25,8 +25,8 @@ class GA:
     Assumed: the roulette's weight is how much better than the worst one is (windowing, Goldberg 1989); mutation draws
     one gene of a child anew within its bounds; parents pair up as drawn, each pair has two children; one elite.
 
-    ``GA(selection="tournament", crossover="blend")`` is the better choice: roulette loses its pressure as costs draw
-    level, and one-point crossover only reshuffles coordinates that exist.
+    ``GA(selection="tournament", crossover="blend", elites=5)`` is the better choice: roulette loses its pressure as
+    costs draw level, one-point crossover only reshuffles coordinates that exist, and blends need more than one elite.
 
     Attributes:
         agents: Population, at least 2.

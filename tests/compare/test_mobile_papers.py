@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from pin_metaik.compare.papers import PAPERS, Options, reproduce, trajectory, trajectory_setup
+from pin_metaik.compare.papers import PAPERS, Options, reproduce, trajectory_setup
+from pin_metaik.compare.papers.claims import verdict
 from pin_metaik.compare.papers.path_planning import SETTINGS, comparison
 from pin_metaik.compare.papers.path_planning_setup import ExactTrial, HitTrial, PathTrial
+from pin_metaik.compare.papers.trajectory_claims import claims
 from pin_metaik.compare.papers.trajectory_setup import PRINTED, Lab, NetTrial, routes, stepped
 from pin_metaik.compare.report.write import markdown
 from pin_metaik.mobile import NOMAD_200
@@ -37,8 +39,9 @@ def test_the_path_papers_report_has_its_tables_claims_and_figures(paths):
     text = markdown(["# Paths"], sections, figures=True)
     assert "11.815274943" in text
     assert "0 of 4 runs end without a penalty" in text
+    assert "| reproduces |" in text
     assert "median gap is smaller on" in text
-    (table, _), *_ = (section.tables for section in sections)
+    (_, table, _), *_ = (section.tables for section in sections)
     assert len(table.rows) == 2 * 2 * len(SETTINGS)
     for section in sections:
         for figure in section.figures:
@@ -105,11 +108,23 @@ def test_the_claims_about_networks_are_counted_not_written():
         return NetTrial(net, trainer, points, "paper", 0, E0, 10 * E0, 3, E0 / 10, E0, 23621, E0 / 1e6, 10, 0.1)
 
     trials = [net(*key, 2.0 if key[2] == "grid" else 1.0) for key in PRINTED]
-    said = " ".join(trajectory.claims(trials))
-    assert "lower mean error in all models. Here in 8 of 8" in said
-    assert "larger in 0 of 8, in the print" in said
-    worse = " ".join(trajectory.claims([net(*key, 1.0 if key[2] == "grid" else 2.0) for key in PRINTED]))
-    assert "Here in 0 of 8" in worse
+    clustering, trainers, errors, speed = claims(trials, [])
+    assert clustering.verdict == "reproduces"
+    assert clustering.because.startswith("in 8 of 8")
+    assert "larger in 0 (in the table in 3)" in clustering.because
+    assert (trainers.verdict, errors.verdict, speed.verdict) == ("does not reproduce", "in part", "not run")
+    worse, *_ = claims([net(*key, 1.0 if key[2] == "grid" else 2.0) for key in PRINTED], [])
+    assert worse.verdict == "does not reproduce"
+    assert worse.because.startswith("in 0 of 8")
+
+
+def test_a_verdict_needs_every_case():
+    assert [verdict(cases) for cases in ([True, True], [True, False], [False], [])] == [
+        "reproduces",
+        "in part",
+        "does not reproduce",
+        "not run",
+    ]
 
 
 def test_integrating_a_turn_in_steps_gives_the_closed_form():

@@ -49,11 +49,12 @@ def test_aerial_arm_puts_the_paper_and_ours_side_by_side(tmp_path, monkeypatch):
     assert result.exit_code == 0, result.output
     for word in ("J paper", "total paper", "total ours", "s paper", "CPU s ours", "11.62", "SFLA + DLS"):
         assert word in result.output
-    tables = {"table_3", "de", "hybrids", "angles", "runs"}
+    tables = {"text", "times", "readings", "de", "hybrids", "angles", "runs"}
     assert files(tmp_path) == {
         "aerial_arm.md",
         *(f"aerial_arm_{table}.csv" for table in tables),
         "aerial_arm_per_run.png",
+        "aerial_arm_de_per_run.png",
     }
 
 

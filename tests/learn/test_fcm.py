@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+import skfuzzy
 from numpy.testing import assert_allclose
 
 from pin_metaik.errors import InvalidSetting
@@ -40,6 +41,15 @@ def test_on_three_clusters_any_start_finds_the_same_centres():
         assert found.converged
         order = [np.linalg.norm(found.centres - c, axis=1).argmin() for c in reference]
         assert_allclose(found.centres[order], reference, atol=1e-4)
+
+
+@pytest.mark.parametrize("m", [2.0, 1.5])
+def test_on_three_clusters_the_centres_are_those_of_scikit_fuzzy(m):
+    Z = three_clusters(np.random.default_rng(1))
+    reference, *_ = skfuzzy.cmeans(Z.T, 3, m, error=1e-9, maxiter=1000, seed=0)
+    found = fuzzy_c_means(Z, 3, m=m, tolerance=1e-9)
+    order = [np.linalg.norm(found.centres - c, axis=1).argmin() for c in reference]
+    assert_allclose(found.centres[order], reference, atol=1e-4)
 
 
 @pytest.mark.parametrize("m", [2.0, 1.3])

@@ -6,7 +6,18 @@ import shapely
 from numpy.testing import assert_allclose
 from shapely import affinity
 
-from pin_metaik.mobile import Blocked, FreeSpace, NoPath, PathProblem, Scene, load_scene, plan_path, random_scene
+from pin_metaik.mobile import (
+    Blocked,
+    FreeSpace,
+    NoPath,
+    PathProblem,
+    Scene,
+    Visibility,
+    grid_of,
+    load_scene,
+    plan_path,
+    random_scene,
+)
 from pin_metaik.mobile.world.scene import scene_names
 from tests.mobile import oracle
 
@@ -65,6 +76,16 @@ def test_grids_full_of_collinear_corners_agree_with_an_unpruned_planner():
         scene = Scene((0, 0), (8, 8), obstacles, (0, 0, 8, 8))
         expected = oracle.shortest_length(scene.start, scene.goal, obstacles, scene.bounds)
         assert plan_path(scene).length == pytest.approx(expected, abs=1e-6)
+
+
+def test_no_line_of_sight_of_a_map_runs_through_its_walls():
+    rng = np.random.default_rng(5)
+    for _ in range(10):
+        grid = grid_of(rng.random((20, 20)) < 0.35, resolution=0.05)  # walls, corners that touch, aligned edges
+        visibility = Visibility(FreeSpace.of(Scene((0, 0), (1, 1), grid.polygons, grid.bounds)))
+        i, j = np.nonzero(np.triu(visibility.mutual))
+        ends = visibility.border.vertices[visibility.border.corners]
+        assert not shapely.intersects(visibility.space.core, shapely.linestrings(np.stack((ends[i], ends[j]), 1))).any()
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.3, 1.0, 2.2])

@@ -4,7 +4,7 @@ import shapely
 from numpy.testing import assert_allclose
 
 from pin_metaik.errors import InvalidSetting, UnknownName
-from pin_metaik.mobile import ExactFitness, FreeSpace, PaperFitness, Scene, load_scene, random_scene
+from pin_metaik.mobile import ExactFitness, FreeSpace, PaperFitness, Scene, load_scene, plan_path, random_scene
 from pin_metaik.mobile.paths.fitness import make_fitness
 
 SQUARE = load_scene("one_square")  # box 4..6; c_p is 120
@@ -24,6 +24,14 @@ def test_the_papers_fitness_has_the_values_worked_out_by_hand(via, f, hits):
     X = np.array([via], dtype=float)
     assert costs(X)[0] == pytest.approx(f, abs=1e-6)
     assert costs.hits(X)[0] == hits
+
+
+@pytest.mark.parametrize("fitness", ["exact", "paper"])
+def test_the_corners_of_a_path_are_via_points_as_they_are(fitness):
+    costs = make_fitness(fitness).on(FreeSpace.of(SQUARE), SQUARE.start, SQUARE.goal)
+    path = plan_path(SQUARE).path
+    assert costs(path.corners.reshape(1, -1))[0] == pytest.approx(path.length)
+    assert costs([[4, 6, 6, 6]])[0] == pytest.approx(path.length)
 
 
 def test_a_segment_without_length_hits_nothing():

@@ -72,6 +72,12 @@ def test_a_ros_map_is_read_upside_down_as_it_is_meant(tmp_path, plain, negate):
     assert known.bounds == (-1, 2, 0.5, 3)
 
 
+def test_the_origin_may_be_a_list_below_its_key(tmp_path):
+    path = write_map(tmp_path, np.full((2, 2), 254))
+    path.write_text(path.read_text().replace("[-1.0, 2.0, 0.0]", "\n- -1.0\n- 2.0\n- 0.0") + "mode: trinary\n")
+    assert read_grid(path).bounds == (-1, 2, 0, 3)
+
+
 def test_a_turned_map_blocks_what_lies_beyond_its_sheet(tmp_path):
     path = write_map(tmp_path, np.full((4, 4), 254), yaw=np.pi / 4)
     grid = read_grid(path)
@@ -98,6 +104,7 @@ def test_a_map_is_a_scene_once_start_and_goal_are_given(tmp_path):
         ("map.yaml", YAML.format(yaw=0, negate=0).encode() + b"mode: raw\n", "mode 'raw'"),
         ("map.yaml", YAML.format(yaw=0, negate=0).replace("0.5", "half").encode(), "not an occupancy grid"),
         ("map.yaml", YAML.format(yaw=0, negate=0).replace("map.pgm", "gone.pgm").encode(), "cannot read .*gone.pgm"),
+        ("map.yaml", YAML.format(yaw=0, negate=0).replace("-1.0, ", "").encode(), "not an occupancy grid"),
         ("grid.npy", b"nothing", "not an occupancy grid"),
         ("map.png", b"", "is a .npy file or the .yaml"),
         ("gone.npy", None, "cannot read"),

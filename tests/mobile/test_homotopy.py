@@ -3,7 +3,7 @@ import pytest
 import shapely
 
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.mobile import NoPath, PathProblem, Scene, load_scene, random_scene
+from pin_metaik.mobile import NoPath, PathProblem, Scene, grid_of, load_scene, random_scene
 
 SQUARES = tuple(shapely.box(x, y, x + 1, y + 1) for x, y in ((2, 2), (5, 2.2), (5, 4)))
 
@@ -65,6 +65,21 @@ def test_every_class_of_two_obstacles_is_found_and_no_more():
     shapes = [signature(path, two) for path in paths]
     assert {(), (1,), (2,), (1, 2)} <= set(shapes)
     assert len(set(shapes)) == len(shapes) < 20
+
+
+def test_ways_round_the_obstacle_that_start_and_goal_touch_do_not_go_through_it():
+    scene = Scene((4, 5), (6, 5.5), (shapely.box(4, 4, 6, 6),), (0, 0, 10, 10))
+    assert [path.length for path in PathProblem.of(scene).alternatives(4)] == pytest.approx([3.5, 4.5])
+
+
+def test_a_map_full_of_specks_has_its_ways_at_once():
+    occupied = np.random.default_rng(1).random((60, 60)) < 0.03
+    occupied[:2, :2] = occupied[-2:, -2:] = False
+    grid = grid_of(occupied)
+    problem = PathProblem.of(Scene((0.5, 0.5), (59.5, 59.5), grid.polygons, grid.bounds))
+    paths = problem.alternatives(10)
+    assert len(paths) == 10
+    assert len({signature(path, grid.polygons) for path in paths}) == 10
 
 
 def test_asking_for_none_is_refused_and_no_way_is_named():

@@ -11,14 +11,21 @@ from scipy.integrate import solve_ivp
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile import NOMAD_200, configurations, mobile_robot, plan_trajectory, velocities
 from pin_metaik.mobile.motion.trajectory import Trajectory
+from pin_metaik.optimize import Budget
 from tests.mobile.routes import BOX, A, B, C, planned
+
+
+def random_plan():
+    scene, path = planned(3)
+    return plan_trajectory(path, NOMAD_200, scene.obstacles)
+
 
 PLANS = {
     "A": lambda: plan_trajectory(A),
     "B": lambda: plan_trajectory(B),
     "C": lambda: plan_trajectory(C, NOMAD_200, (BOX,)),
-    "stops": lambda: plan_trajectory(B, method="de", budget=None or __import__("pin_metaik").Budget(evaluations=30)),
-    "random": lambda: (lambda scene, path: plan_trajectory(path, NOMAD_200, scene.obstacles))(*planned(3)),
+    "stops": lambda: plan_trajectory(B, method="de", budget=Budget(evaluations=30)),
+    "random": random_plan,
 }
 
 
@@ -61,7 +68,7 @@ def test_no_limit_is_exceeded_and_curves_have_constant_speed(plan):
 def test_speed_position_and_heading_fit_each_other_between_samples(plan):
     s = plan.trajectory.sample(0.001)
     dt = np.diff(s.t)
-    assert_allclose(np.diff(s.v), (s.a * 1)[:-1] * dt, atol=1e-9)
+    assert_allclose(np.diff(s.v), s.a[:-1] * dt, atol=1e-9)
     assert_allclose(np.diff(s.omega), s.alpha[:-1] * dt, atol=1e-9)
     assert_allclose(np.diff(s.heading), (s.omega[:-1] + np.diff(s.omega) / 2) * dt, atol=1e-9)
     middle, v = (s.heading[:-1] + s.heading[1:]) / 2, (s.v[:-1] + s.v[1:]) / 2

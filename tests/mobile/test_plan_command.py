@@ -44,6 +44,8 @@ def test_everything_is_written_to_the_folder(tmp_path):
     with (tmp_path / "path.csv").open() as file:
         points = [(float(row["x"]), float(row["y"])) for row in csv.DictReader(file)]
     assert points == [tuple(point) for point in path["path"]]
+    assert len(path["alternatives"]) == 2
+    assert path["alternatives"][0]["length"] < path["alternatives"][1]["length"]
     assert trajectory["time"] == trajectory["samples"]["t"][-1]
     again = call(tmp_path / "scene.json", "--radius", 0.23, "--margin", 0.1, "--json")
     assert json.loads(again.stdout)["path"]["optimum"] == pytest.approx(path["optimum"])
@@ -63,6 +65,14 @@ def test_polygons_and_grids_are_planned_from_files(tmp_path):
     np.save(tmp_path / "grid.npy", np.zeros((5, 5)))
     for name in ("map.geojson", "grid.npy"):
         assert call(tmp_path / name, "--start", 0.5, 0.5, "--goal", 4.5, 0.5).exit_code == 0
+
+
+def test_a_robot_of_ones_own_is_a_json_file(tmp_path):
+    (tmp_path / "slow.json").write_text('{"v_max": 0.25}')
+    done = call("random:1", "--trajectory", "dp", "--vehicle", tmp_path / "slow.json", "--json")
+    trajectory = json.loads(done.stdout)["trajectory"]
+    assert trajectory["vehicle"]["name"] == "slow"
+    assert max(trajectory["speeds"]) <= 0.25
 
 
 @pytest.mark.parametrize(

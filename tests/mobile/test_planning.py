@@ -30,8 +30,8 @@ def test_on_ten_obstacles_every_run_is_free_and_the_median_gap_is_what_it_should
     assert 0 < median(plan.gap for plan in plans) < limit
 
 
-@pytest.mark.parametrize("seed", [2, 32])
-def test_on_easy_scenes_with_one_corner_pso_comes_within_a_percent(seed):
+@pytest.mark.parametrize("seed", [2, 32])  # of 0 to 39, 0, 27 and 37 have one corner, too: there it ends 4 to 5 % above
+def test_on_two_scenes_with_one_corner_pso_comes_within_a_percent(seed):
     problem = PathProblem.of(random_scene(15, seed, start=(0.1, 0.1), goal=(8.5, 8)))
     assert len(problem.optimum.corners) == 1
     plans = [plan_path(problem, "pso", fitness="paper", rng=run) for run in range(15)]
@@ -70,16 +70,15 @@ def test_a_seed_with_more_corners_than_via_points_is_refused():
         plan_path(load_scene("fifteen_obstacles"), "ga", via=3, seeded=True)
 
 
+@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("method", ["ga", "pso"])
-def test_from_a_pocket_the_paper_finds_no_way_and_says_so(method):
+def test_from_a_pocket_the_paper_finds_no_way_and_says_so(method, seed):
     scene = load_scene("u_trap")
-    plan = plan_path(scene, method, fitness="paper", via=2, budget=Budget(evaluations=3000))
+    plan = plan_path(scene, method, fitness="paper", rng=seed)
     assert plan.cost > 120
-    if not plan.problem.space.holds(plan.path.points):
-        assert plan.status is PathStatus.COLLIDES
-        assert not plan.success
-        assert plan.gap is None
-        assert "COLLIDES" in str(plan)
+    assert plan.status is PathStatus.COLLIDES
+    assert (plan.success, plan.gap) == (False, None)
+    assert "COLLIDES" in str(plan)
     assert plan.optimum == pytest.approx(13.959653242, abs=1e-6)
     assert plan_path(scene).success
 

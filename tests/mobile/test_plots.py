@@ -39,7 +39,8 @@ def test_worlds_without_walls_or_obstacles_and_obstacles_with_holes_are_drawn():
         figure = Figure()
         plan = plan_path(scene)
         plots.draw_plan(figure, plan)
-        plots.draw_runs(figure.axes[0], scene, [plan.path], plan.path)
+        plots.draw_runs(figure.axes[0], scene, [plan.path], plan.path, colliding=[plan.path])
+        assert figure.axes[0].lines[-2].get_linestyle() == ":"
         figure = Figure()
         plots.draw_trajectory(figure, plan_trajectory(plan.path, obstacles=scene.obstacles, radius=0.0), scene)
 

@@ -7,8 +7,9 @@ from numpy.testing import assert_allclose
 from scipy.integrate import cumulative_simpson
 
 from pin_metaik.errors import InvalidGeometry, InvalidSetting, UnknownName
-from pin_metaik.mobile import NOMAD_200, SynchroDrive, load_vehicle
+from pin_metaik.mobile import NOMAD_200, Path, Route, SynchroDrive, load_vehicle
 from pin_metaik.mobile.motion.straight import straight_phases, straight_time
+from pin_metaik.mobile.motion.timing import drive
 from pin_metaik.mobile.motion.turn import clothoid, cut_time, lead_time, turn_phases, turn_shape, turn_time
 from pin_metaik.mobile.motion.turn_data import fine_grid
 
@@ -51,6 +52,19 @@ def test_the_curve_meets_the_outgoing_line_where_the_closed_form_says():
         alpha = v * lead_time(theta, vehicle)
         assert_allclose((x, y), alpha * np.array((1 + np.cos(theta), np.sin(theta))), atol=1e-6)
         assert heading[-1] == pytest.approx(theta, abs=1e-6)
+
+
+def test_the_tangent_length_of_a_driven_curve_is_linear_in_its_speed():
+    for vehicle, theta, _ in random_turns(20):
+        room = 10 + 2 * vehicle.v_max * float(lead_time(theta, vehicle))  # to get to full speed before the curve
+        route = Route.along(Path([(-room, 0), (0, 0), (room * np.cos(theta), room * np.sin(theta))]), vehicle)
+        per_speed = []
+        for v in np.linspace(0.3, 1, 7)[:, None] * vehicle.v_max:
+            trajectory = drive(route, v)
+            turning = next(i for i, phase in enumerate(trajectory.phases) if not phase.straight)
+            (begin,) = trajectory.at(trajectory.boundaries[turning]).xy
+            per_speed.append(-begin[0] / v[0])
+        assert_allclose(per_speed, lead_time(theta, vehicle), rtol=1e-12)
 
 
 def test_the_shape_begins_and_ends_on_the_lines_and_is_cut_at_its_middle():
@@ -147,3 +161,21 @@ def test_vehicles_are_found_by_name_and_have_sound_limits():
     for wrong in ({"v_max": 0}, {"a_max": np.nan}, {"omega_max": np.inf}, {"radius": -1}):
         with pytest.raises(InvalidSetting):
             dataclasses.replace(NOMAD_200, **wrong)
+
+
+def test_a_vehicle_from_a_file_is_the_nomad_but_for_what_the_file_says(tmp_path):
+    file = tmp_path / "mine.json"
+    file.write_text('{"v_max": 0.508, "alpha_max": 0.5}')
+    assert load_vehicle(file) == dataclasses.replace(NOMAD_200, name="mine", v_max=0.508, alpha_max=0.5)
+    for text, said in (
+        ("{", "not JSON"),
+        ("[1]", "is no object"),
+        ('{"v": 1}', "it has v; known: name, v_max"),
+        ('{"v_max": "fast"}', "v_max must be a number, not 'fast'"),
+        ('{"v_max": -1}', "v_max must be a finite number above 0"),
+    ):
+        file.write_text(text)
+        with pytest.raises(InvalidSetting, match=said):
+            load_vehicle(file)
+    with pytest.raises(InvalidSetting, match="cannot read"):
+        load_vehicle(tmp_path / "gone.json")

@@ -92,6 +92,47 @@ def test_memeplexes_are_shuffled_after_their_leaps():
     assert np.array_equal(shuffled["best"], [0, 1, 2])
 
 
+@pytest.mark.parametrize("frogs", [12, 13, 14])
+def test_all_frogs_but_the_best_of_each_memeplex_can_leap_at_once(frogs):
+    search = AskTell(
+        Box([-9.0] * 3, [9.0] * 3),
+        SFLA(frogs, 3, leaps=2, leapers="all"),
+        seeds=BOX.sample(np.random.default_rng(0), 99),
+    )
+    X = search.ask()
+    f = np.square(X).sum(axis=1)
+    search.tell(f)
+    order = f.argsort(kind="stable")
+    followers, leaders = X[order[3:]], X[order[np.arange(3, frogs) % 3]]
+    leaps = search.ask()
+    assert len(leaps) == frogs - 3
+    for x, start, leader in zip(leaps, followers, leaders, strict=True):
+        assert between(x, start, leader, 1.3)
+    costs = np.arange(frogs - 3) - 99.0  # the first three beat their leaders and lead from now on
+    search.tell(costs)
+    second = search.ask()
+    others = np.concatenate((X[order[:3]], leaps[3:]))  # by frog: the old leaders come first
+    assert len(second) == frogs - 3
+    for i, (x, start) in enumerate(zip(second, others, strict=True)):
+        assert between(x, start, leaps[i % 3], 1.3)
+
+
+def test_when_all_leap_the_fallbacks_are_for_those_that_did_not_improve():
+    search = AskTell(Box([-9.0] * 3, [9.0] * 3), SFLA(12, 3, leapers="all"))
+    X = search.ask()
+    f = np.square(X).sum(axis=1)
+    search.tell(f)
+    search.ask()
+    search.tell([*[np.inf] * 4, *[f.min() + 1e-9] * 5])
+    towards_best = search.ask()
+    frogs = X[f.argsort(kind="stable")[3:7]]
+    assert len(towards_best) == 4
+    for x, frog in zip(towards_best, frogs, strict=True):
+        assert between(x, frog, X[f.argmin()], 1.3)
+    search.tell([np.inf] * 4)
+    assert len(search.ask()) == 4
+
+
 def test_fallbacks_are_paid_for():
     counted = []
 

@@ -8,7 +8,9 @@ from statistics import median
 from typing import Any
 
 from pin_metaik.compare.papers import plots
+from pin_metaik.compare.papers.claims import claims_table
 from pin_metaik.compare.papers.paper import Job, Options, Paper
+from pin_metaik.compare.papers.path_planning_claims import claims, of
 from pin_metaik.compare.papers.path_planning_setup import (
     SEGMENTS,
     SETTINGS,
@@ -59,9 +61,8 @@ def sections(done: Sequence[Any], options: Options) -> list[Section]:
             (
                 "The paper prints no obstacles: the scenes are ours, with its start, goal, numbers and constants. A "
                 "run is free if an exact test on the true obstacles says so; gaps are over free runs.",
-                *claims(trials),
             ),
-            (comparison(trials), every_run(trials)),
+            (claims_table("path_planning_claims", claims(trials)), comparison(trials), every_run(trials)),
             figures(trials),
         ),
         Section(
@@ -79,21 +80,7 @@ def sections(done: Sequence[Any], options: Options) -> list[Section]:
             ),
             (hit_table([trial for trial in done if isinstance(trial, HitTrial)]),),
         ),
-        Section(
-            "What cannot be reproduced",
-            (
-                "Example 1 prints an objective of 12.0545 and 33.6 s (10,000 evaluations on a Pentium 4); its "
-                "obstacles are not given, so the number says nothing. The detour penalty p_p acts on segments longer "
-                "than three times the distance from start to goal, which is more than the workspace's diagonal: it "
-                "never acts.",
-            ),
-        ),
     ]
-
-
-def of(trials: Sequence[PathTrial], scene: str, method: str, fitness: str) -> list[PathTrial]:
-    """The runs of a method on a scene with a fitness."""
-    return [trial for trial in trials if (trial.scene, trial.method, trial.fitness) == (scene, method, fitness)]
 
 
 def comparison(trials: Sequence[PathTrial]) -> Table:
@@ -112,31 +99,9 @@ def comparison(trials: Sequence[PathTrial]) -> Table:
     columns = (
         *(Column("scene"), Column("fitness"), Column("method"), Column("runs"), Column("free %", ".0f")),
         *(Column("best gap %", ".2f"), Column("median gap %", ".2f"), Column("worst gap %", ".1f")),
-        *(Column("median f", ".2f"), Column("ms a run", ".0f")),
+        *(Column("median f", ".2f"), Column("ms a run", ".1f")),
     )
     return Table("path_planning", "Gap to the shortest path", columns, rows)
-
-
-def claims(trials: Sequence[PathTrial]) -> Iterator[str]:
-    """Whether PSO finds the better path, and whether it is faster, in sentences."""
-    pairs = [(of(trials, scene, "GA", "paper"), of(trials, scene, "PSO", "paper")) for scene in SETTINGS]
-    pairs = [(ga, pso) for ga, pso in pairs if ga and pso]
-    if not pairs:
-        yield "GA and PSO were not both run."
-        return
-    shorter = sum(_gap(pso) < _gap(ga) for ga, pso in pairs)
-    fitter = sum(median(t.f for t in pso) < median(t.f for t in ga) for ga, pso in pairs)
-    stuck = sum(_free(pso) < _free(ga) for ga, pso in pairs)
-    quicker = [median(t.seconds for t in ga) / median(t.seconds for t in pso) for ga, pso in pairs]
-    yield (
-        f"Claim: PSO finds better paths than GA. With the paper's fitness its median gap is smaller on {shorter} of "
-        f"{len(pairs)} scenes and its median fitness better on {fitter}; but it ends in an obstacle more often than GA "
-        f"on {stuck} of them."
-    )
-    yield (
-        f"Claim: PSO is faster. Here GA takes {min(quicker):.2f} to {max(quicker):.2f} times as long for as many "
-        "evaluations. An evaluation costs both the same; the rest is how their bookkeeping is written."
-    )
 
 
 def speed(done: Sequence[Any]) -> str:
@@ -154,7 +119,7 @@ def speed(done: Sequence[Any]) -> str:
 
 def shortest(trials: Sequence[ExactTrial]) -> Table:
     """The shortest paths."""
-    columns = (Column("scene"), Column("length", ".9f"), Column("corners"), Column("ms", ".1f"))
+    columns = (Column("scene"), Column("length", ".9f"), Column("corners"), Column("processor ms", ".1f"))
     rows: list[tuple[Value, ...]] = [(t.scene, t.length, t.corners, 1e3 * t.seconds) for t in trials]
     return Table("path_planning_exact", "Shortest paths, from the polygons on", columns, rows)
 
@@ -224,7 +189,7 @@ def figures(trials: Sequence[PathTrial]) -> tuple[Figure, ...]:
                 runs = of(trials, scene, method, "paper")
                 seconds = [1e3 * t.seconds for t in runs]
                 ax.plot([t.run + 1 for t in runs], seconds, ".-", color=COLOURS[method], linewidth=0.8, label=method)
-            ax.set(title=scene, xlabel="run", ylabel="time, ms", ylim=(0, None))
+            ax.set(title=scene, xlabel="run", ylabel="processor time, ms", ylim=(0, None))
             ax.grid(alpha=0.3)
             ax.legend(frameon=False)
 
@@ -237,25 +202,21 @@ def figures(trials: Sequence[PathTrial]) -> tuple[Figure, ...]:
             for ax, scene in zip(row, scenes, strict=True):
                 runs = of(trials, scene, method, "paper")
                 world = problem(SETTINGS[scene])
-                draw_runs(ax, world.scene, [Path(t.points) for t in runs], world.optimum, COLOURS[method])
+                free, colliding = ([Path(t.points) for t in runs if t.free is well] for well in (True, False))
+                draw_runs(ax, world.scene, free, world.optimum, COLOURS[method], colliding)
                 ax.set_title(f"{scene}, {method}: {sum(t.free for t in runs)} of {len(runs)} free", fontsize="medium")
 
     wide = plots.size(*[1] * len(scenes))
     return (
-        Figure("path_planning_paths", "All runs over one another; dashed: the shortest path.", overlay, (wide[0], 7.6)),
+        Figure(
+            "path_planning_paths",
+            "All runs over one another, dotted if they collide; dashed: the shortest path.",
+            overlay,
+            (wide[0], 7.6),
+        ),
         Figure("path_planning_convergence", "Best fitness so far: medians thick, runs thin.", convergence, wide),
-        Figure("path_planning_times", "Time of every run.", times, wide),
+        Figure("path_planning_times", "Processor time of every run.", times, wide),
     )
-
-
-def _gap(runs: Sequence[PathTrial]) -> float:
-    """Median gap of the free runs; inf without any."""
-    gaps = [trial.gap for trial in runs if trial.gap is not None]
-    return median(gaps) if gaps else float("inf")
-
-
-def _free(runs: Sequence[PathTrial]) -> float:
-    return sum(trial.free for trial in runs) / len(runs)
 
 
 PATH_PLANNING = Paper(

@@ -81,11 +81,11 @@ def strip(canvas: Any, panels: Mapping[str, Mapping[str, Runs]], cost: str, floo
         ax.set_xticks(range(len(panel)), list(panel), fontsize="small")
         ax.grid(axis="y", alpha=0.3)
     axes[0].set_ylabel(cost)
-    marks = (
-        axes[0].plot([], [], "o", color="grey", markersize=4, label="a run")
-        + axes[0].plot([], [], color="grey", linewidth=2, label="median")
-        + axes[0].plot([], [], "D", markerfacecolor="none", color="black", markersize=5, label="the paper")
+    marks = axes[0].plot([], [], "o", color="grey", markersize=4, label="a run") + axes[0].plot(
+        [], [], color="grey", linewidth=2, label="median"
     )
+    if any(runs.paper is not None for panel in panels.values() for runs in panel.values()):
+        marks += axes[0].plot([], [], "D", markerfacecolor="none", color="black", markersize=5, label="the paper")
     canvas.legend(handles=marks, loc="outside lower center", ncols=len(marks), frameon=False)
 
 

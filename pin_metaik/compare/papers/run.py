@@ -8,6 +8,7 @@ from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.table import Column
 
 from pin_metaik.compare.papers.paper import AnyPaper, Options
 from pin_metaik.compare.report import Section
@@ -55,9 +56,11 @@ def reproduce(paper: AnyPaper, options: Options, console: Console | None = None)
     began = perf_counter()
     jobs = list(paper.jobs(options))
     done: list[Any] = []
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TextColumn("left"))
+    label = TextColumn("{task.description}", table_column=Column(no_wrap=True, overflow="ellipsis", ratio=1))
+    times = [kind(table_column=Column(no_wrap=True, min_width=7)) for kind in (TimeElapsedColumn, TimeRemainingColumn)]
+    columns = (label, BarColumn(bar_width=20), times[0], TextColumn("left"), times[1])
     bar = Progress(
-        *columns, TimeRemainingColumn(), console=console or Console(quiet=True), transient=True, disable=console is None
+        *columns, console=console or Console(quiet=True), transient=True, disable=console is None, expand=True
     )
     try:
         with bar:

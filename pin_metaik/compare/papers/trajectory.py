@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from statistics import median
 from typing import Any
 
 import numpy as np
 
 from pin_metaik.compare.papers import plots
+from pin_metaik.compare.papers.claims import claims_table
 from pin_metaik.compare.papers.paper import Job, Options, Paper
+from pin_metaik.compare.papers.trajectory_claims import claims, middle, of, plan_remarks, remarks
 from pin_metaik.compare.papers.trajectory_setup import (
     CONTROLS,
     COUNTS,
@@ -27,7 +28,6 @@ from pin_metaik.compare.papers.trajectory_setup import (
 )
 from pin_metaik.compare.report import Column, Figure, Section, Table, Value
 
-CONTROL_IS = {"random": " of the test set, drawn without a thought,", "chebyshev": ", a grid denser at its borders,"}
 COST = {"lm": 4.0, "bfgs": 1.5, "rprop": 1.0, "scg": 3.0}  # of a training, roughly
 
 
@@ -66,9 +66,9 @@ def sections(done: Sequence[Any], options: Options) -> list[Section]:
                 "undefined: vectors from 1 degree on count. Ours are medians over the starts of the weights, with "
                 f"{Lab(options).iterations:,} iterations (the paper: {PRINTED_ITERATIONS:,}); activation, scaling, "
                 "initial weights and three of the robot's four limits are not printed and were assumed.",
-                *claims(nets),
+                *remarks(nets),
             ),
-            (table_1(nets), every_net(nets)),
+            (claims_table("trajectory_claims", claims(nets, speeds)), table_1(nets), every_net(nets)),
             figures(nets),
         ),
         Section(
@@ -80,28 +80,18 @@ def sections(done: Sequence[Any], options: Options) -> list[Section]:
             ),
             (designs(nets),),
         ),
-        Section("Speed", (speed_claim(speeds),), (speed_table(speeds),)),
+        Section("Speed", (), (speed_table(speeds),)),
         Section(
             "Plans",
             (
                 "dp is dynamic programming over the speeds in the corners, de the paper's search with the closed form, "
                 "ANN the same with a network. Networks are executed with the true turns: an error of the tangent "
                 "length shifts all that follows, and the robot misses the goal by the last column.",
-                *plan_claims(plans),
+                *plan_remarks(plans),
             ),
             (plan_table(plans),),
         ),
     ]
-
-
-def of(nets: Sequence[NetTrial], net: str, trainer: str, points: str, design: str = "paper") -> list[NetTrial]:
-    """The runs of one kind of network."""
-    return [t for t in nets if (t.net, t.trainer, t.points, t.design) == (net, trainer, points, design)]
-
-
-def middle(trials: Sequence[NetTrial], error: str) -> float:
-    """Median over the runs of one of the errors."""
-    return float(median(getattr(trial, error) for trial in trials))
 
 
 def table_1(nets: Sequence[NetTrial]) -> Table:
@@ -117,50 +107,10 @@ def table_1(nets: Sequence[NetTrial]) -> Table:
     columns = (
         *(Column("net"), Column("trainer"), Column("points")),
         *(Column("paper E0", ".4g"), Column("paper Em", ".4g"), Column("paper E5", ",")),
-        *(Column("E0", ".4g"), Column("Em", ".4g"), Column("E5", ",.0f"), Column("F0", ".3g"), Column("Fm", ".3g")),
+        *(Column("E0", ".4g"), Column("Em", ",.4g"), Column("E5", ",.0f"), Column("F0", ".3g"), Column("Fm", ".3g")),
         *(Column("mse", ".1e"), Column("runs"), Column("n", ",")),
     )
     return Table("trajectory_networks", "Errors of tangent lengths, percent", columns, rows)
-
-
-def claims(nets: Sequence[NetTrial]) -> Iterator[str]:
-    """Which of the paper's claims hold here, in sentences."""
-    pairs = [(of(nets, net, trainer, "grid"), of(nets, net, trainer, "fcm")) for net in NETS for trainer in TRAINERS]
-    pairs = [(grid, fcm) for grid, fcm in pairs if grid and fcm]
-    if not pairs:
-        yield "The networks on grid and on clustered points were not both trained."
-        return
-    lower = sum(middle(fcm, "E0") < middle(grid, "E0") for grid, fcm in pairs)
-    larger, full = (sum(middle(f, error) > middle(g, error) for g, f in pairs) for error in ("Em", "Fm"))
-    yield (
-        f"Claim: clustered points give the lower mean error in all models. Here in {lower} of {len(pairs)}, in the "
-        f"print in 7 of 8 with one tie. Their largest relative error is larger in {larger} of {len(pairs)}, in the "
-        f"print in 3 of 8; as a share of the full scale it is larger in {full} of {len(pairs)}."
-    )
-    for net in NETS:
-        errors = {points: of(nets, net, "lm", points) for points in POINTS}
-        if all(errors.values()):
-            said = ", ".join(f"{points} {middle(runs, 'E0'):.3g}" for points, runs in errors.items())
-            yield f"E0 of {net} with Levenberg-Marquardt by training points: {said} percent."
-    for points in CONTROLS:
-        runs = [(of(nets, net, "lm", points), of(nets, net, "lm", "grid")) for net in NETS]
-        if all(control and grid for control, grid in runs):
-            better = sum(middle(control, "E0") < middle(grid, "E0") for control, grid in runs)
-            yield (
-                f"Control: as many {POINTS[points]}{CONTROL_IS[points]} beat the grid, too, in {better} of {len(runs)} "
-                "nets."
-            )
-    for net in NETS:
-        trained = {trainer: of(nets, net, trainer, "grid") for trainer in TRAINERS}
-        if all(trained.values()):
-            ranks = sorted((middle(trials, "mse"), trainer) for trainer, trials in trained.items())
-            said = ", ".join(f"{trainer} {mse:.1e}" for mse, trainer in ranks)
-            yield f"Claim: Levenberg-Marquardt is the best trainer, Rprop the worst. Training error of {net}: {said}."
-    ours, paper = middle(pairs[0][0], "E0"), PRINTED["2:5:1", "lm", "grid"].E0
-    yield (
-        f"The printed errors themselves do not reproduce: {paper:.2g} percent there, {ours:.2g} here for 2:5:1 with "
-        "Levenberg-Marquardt on the grid. With a plain output over three decades no run came near."
-    )
 
 
 def designs(nets: Sequence[NetTrial]) -> Table:
@@ -172,7 +122,7 @@ def designs(nets: Sequence[NetTrial]) -> Table:
             if runs:
                 rows.append((net, design, *(middle(runs, error) for error in ("E0", "Em", "E5", "F0", "Fm"))))
     columns = (
-        *(Column("net"), Column("design"), Column("E0", ".3g"), Column("Em", ".3g"), Column("E5", ",.0f")),
+        *(Column("net"), Column("design"), Column("E0", ".3g"), Column("Em", ",.4g"), Column("E5", ",.0f")),
         *(Column("F0", ".3g"), Column("Fm", ".3g")),
     )
     return Table("trajectory_designs", "Levenberg-Marquardt on the grid", columns, rows)
@@ -184,47 +134,20 @@ def speed_table(speeds: Sequence[SpeedTrial]) -> Table:
     rows: list[tuple[Value, ...]] = [
         (method, *(by.get((method, count)) for count in COUNTS)) for method in dict.fromkeys(t.method for t in speeds)
     ]
-    columns = (Column("method"), *(Column(f"{count:,}", ",.4g") for count in COUNTS))
+    columns = (Column("method"), *(Column(f"{count:,}", ",.1f") for count in COUNTS))
     return Table("trajectory_speed", "Microseconds for so many tangent lengths", columns, rows)
-
-
-def speed_claim(speeds: Sequence[SpeedTrial]) -> str:
-    """What the network saves, and against what, in a sentence."""
-    by = {(trial.method, trial.count): trial.microseconds for trial in speeds}
-    if not by:
-        return "Not measured."
-    ratios = [
-        (by["step by step", n] / by["ANN 2:5:1", n], by["ANN 2:5:1", n] / by["closed form", n]) for n in (1, 1000)
-    ]
-    (one, one_closed), (many, many_closed) = ratios
-    return (
-        f"Claim: the network makes planning fast. 2:5:1 takes 1/{one:.0f} of the time of integrating a turn in 1,000 "
-        f"steps (1/{many:.0f} for 1,000 turns at once), and {one_closed:.2g} ({many_closed:.2g}) times the time of the "
-        "closed form, which is exact."
-    )
-
-
-def plan_claims(plans: Sequence[PlanTrial]) -> Iterator[str]:
-    """What the search gives away, in a sentence."""
-    best = {trial.scene: trial.time for trial in plans if trial.method == "dp"}
-    found = {trial.scene: trial.time for trial in plans if trial.method == "de"}
-    if best and found.keys() == best.keys():
-        worse = [100 * (found[scene] / best[scene] - 1) for scene in best]
-        yield f"The search ends {min(worse):.2g} to {max(worse):.2g} percent above dynamic programming."
-    misses = [trial.end_error for trial in plans if trial.tangent_error is not None]
-    if misses:
-        yield f"With networks the robot ends {min(misses):.2g} to {max(misses):.2g} mm from the goal."
 
 
 def plan_table(plans: Sequence[PlanTrial]) -> Table:
     """Every plan."""
     columns = (
         *(Column("path"), Column("corners"), Column("method"), Column("time s", ".3f"), Column("with stops s", ".3f")),
-        *(Column("planning ms", ".1f"), Column("tangent error mm", ".3g"), Column("misses goal by mm", ".3g")),
+        *(Column("planning ms", ".1f"), Column("tangent error mm", ".3f"), Column("misses goal by mm", ".3f")),
+        Column("keeps clear"),
     )
+    shown = ("scene", "corners", "method", "time", "stop_and_turn", "milliseconds", "tangent_error", "end_error")
     rows: list[tuple[Value, ...]] = [
-        (t.scene, t.corners, t.method, t.time, t.stop_and_turn, t.milliseconds, t.tangent_error, t.end_error)
-        for t in plans
+        (*(getattr(trial, name) for name in shown), "yes" if trial.clear else "no") for trial in plans
     ]
     return Table("trajectory_plans", "Time-optimal trajectories", columns, rows)
 

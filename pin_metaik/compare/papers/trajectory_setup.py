@@ -117,6 +117,7 @@ class PlanTrial:
         tangent_error: Largest error of a tangent length, mm; None without a network.
         end_error: Of the executed trajectory, mm.
         milliseconds: Of planning.
+        clear: Whether the executed trajectory keeps the robot's radius from the obstacles.
     """
 
     scene: str
@@ -127,6 +128,7 @@ class PlanTrial:
     tangent_error: float | None
     end_error: float
     milliseconds: float
+    clear: bool
 
 
 @dataclass
@@ -247,7 +249,7 @@ class Lab:
                     raise KeyboardInterrupt
                 wrong = None if plan.learned is None else 1e3 * plan.learned.tangent_error
                 ends = (plan.time, plan.stop_and_turn, wrong, 1e3 * plan.end_error, 1e3 * plan.seconds)
-                trials.append(PlanTrial(name, len(plan.v), label, *ends))
+                trials.append(PlanTrial(name, len(plan.v), label, *ends, plan.collision_free))
             return trials
 
         return work

@@ -25,7 +25,7 @@ def _grid(table: Table) -> Grid:
     grid = Grid(title=table.title, title_justify="left", title_style="italic", box=None, padding=(0, 1))
     for i, column in enumerate(table.columns):
         words = any(isinstance(row[i], str) for row in table.rows)
-        grid.add_column(column.heading, justify="left" if words else "right")
+        grid.add_column(column.heading, justify="left" if words else "right", overflow="fold")
     for row in table.rows:
         grid.add_row(*(column.text(value) for column, value in zip(table.columns, row, strict=True)))
     return grid

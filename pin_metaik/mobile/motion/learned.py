@@ -61,7 +61,7 @@ class TurnReport:
     exact: tuple[int, ...]
 
     def __str__(self) -> str:
-        said = f"the network's tangent lengths are wrong by up to {1e3 * self.tangent_error:.3g} mm"
+        said = f"the network's tangent lengths are wrong by up to {1e3 * self.tangent_error:.3f} mm"
         if self.exact:
             said += f"; corner {', '.join(map(str, self.exact))} lies outside its training range: closed form there"
         return said

@@ -107,7 +107,7 @@ class TrajectoryPlan:
             said.append(f"stops and turns at corner {', '.join(stops)}")
         if self.learned is not None:
             said.append(str(self.learned))
-            said.append(f"because of that the robot ends {1e3 * self.end_error:.3g} mm from the goal")
+            said.append(f"because of that the robot ends {1e3 * self.end_error:.3f} mm from the goal")
         if not self.collision_free:
             said.append(
                 f"comes within {self.clearance:.4g} m of an obstacle, the radius is {self.radius:g} m: not a solution"

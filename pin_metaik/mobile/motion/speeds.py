@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pin_metaik.mobile import kernels
+from pin_metaik.mobile.motion import speed_kernels as kernels
 from pin_metaik.mobile.motion.route import Route
 from pin_metaik.optimize import AskTell, Box, Budget, Metaheuristic, minimize
 from pin_metaik.optimize.space import Array

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.mobile.files import read_json
 
 INCH = 0.0254  # m
 
@@ -56,12 +58,32 @@ NOMAD_200_DRIVER = SynchroDrive("nomad200_driver", 20 * INCH, 30 * INCH, math.ra
 VEHICLES = {vehicle.name: vehicle for vehicle in (NOMAD_200, NOMAD_200_DRIVER)}
 
 
-def load_vehicle(name: str) -> SynchroDrive:
-    """A robot by name.
+LIMITS = ("v_max", "a_max", "omega_max", "alpha_max", "radius")
+
+
+def load_vehicle(source: str | Path) -> SynchroDrive:
+    """A robot by name, or from a JSON file.
+
+    Args:
+        source: ``nomad200``, ``nomad200_driver``, or the path of a ``.json`` with any of v_max, a_max, omega_max,
+            alpha_max (m and rad) and radius; what it leaves out is the Nomad 200's.
 
     Raises:
         UnknownName: None of that name.
+        InvalidSetting: The file is missing or malformed, or a limit makes no sense.
     """
-    if name not in VEHICLES:
-        raise UnknownName("vehicle", name, VEHICLES)
-    return VEHICLES[name]
+    if Path(source).suffix.lower() == ".json":
+        return _read(Path(source))
+    if source not in VEHICLES:
+        raise UnknownName("vehicle", str(source), VEHICLES)
+    return VEHICLES[str(source)]
+
+
+def _read(path: Path) -> SynchroDrive:
+    given = read_json(path, InvalidSetting)
+    if not isinstance(given, dict) or (unknown := given.keys() - {"name", *LIMITS}):
+        what = f"has {', '.join(sorted(unknown))}" if isinstance(given, dict) else "is no object"
+        raise InvalidSetting(f"{path} is not a vehicle: it {what}; known: name, {', '.join(LIMITS)}")
+    if wrong := [name for name in LIMITS if not isinstance(given.get(name, 0.0), (int, float))]:
+        raise InvalidSetting(f"{path}: {wrong[0]} must be a number, not {given[wrong[0]]!r}")
+    return replace(NOMAD_200, **{"name": path.stem, **given})

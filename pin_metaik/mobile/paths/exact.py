@@ -52,11 +52,7 @@ def _route(graph: VisibilityGraph) -> list[int] | None:
 
 
 def _without_blocked(graph: VisibilityGraph, nodes: list[int], space: FreeSpace) -> VisibilityGraph:
-    """The graph without the first edge of a way that is not free.
-
-    Edges are tested by where they cross the border. One that runs inside an obstacle from a point on its border to
-    another crosses nothing: rare (start and goal both touch the same obstacle), and found by the proof only.
-    """
+    """The graph without the first edge of a way that the exact test refuses: one that was let through by rounding."""
     for i, j in zip(nodes[:-1], nodes[1:], strict=True):
         if not space.holds(graph.points[[i, j]]):
             return graph.without(i, j)

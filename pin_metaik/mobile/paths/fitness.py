@@ -11,7 +11,7 @@ import shapely
 from numpy.typing import NDArray
 
 from pin_metaik.errors import UnknownName
-from pin_metaik.mobile import kernels
+from pin_metaik.mobile.paths import fitness_kernels as kernels
 from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.growth import grow, rings
 from pin_metaik.mobile.world.scene import Point
@@ -144,7 +144,9 @@ class Overlap:
 
     def _both(self, X: Array) -> tuple[Array, Counts]:
         costs, hits = np.empty(len(X)), np.empty(len(X), dtype=np.int64)
-        kernels.overlap_costs(np.ascontiguousarray(X), self.ends, self.vertices, self.after, self.c_p, costs, hits)
+        kernels.overlap_costs(
+            np.array(X, dtype=float, order="C"), self.ends, self.vertices, self.after, self.c_p, costs, hits
+        )
         return costs, hits
 
 
@@ -190,7 +192,7 @@ class Hulls:
     def segment_hits(self, segments: Array) -> NDArray[np.bool_]:
         """Which obstacles segments (k, 4) from x, y to x, y hit by the paper's test (k, obstacles)."""
         hits = np.empty((len(segments), len(self.hulls)), dtype=bool)
-        kernels.segment_hits(np.ascontiguousarray(segments), *self._arrays, hits)
+        kernels.segment_hits(np.array(segments, dtype=float, order="C"), *self._arrays, hits)
         return hits
 
     def _both(self, X: Array) -> tuple[Array, Counts]:
@@ -198,7 +200,7 @@ class Hulls:
         d_u = float(np.hypot(*(self.ends[2:] - self.ends[:2])))
         costs, hits = np.empty(len(X)), np.empty(len(X), dtype=np.int64)
         kernels.paper_costs(
-            np.ascontiguousarray(X),
+            np.array(X, dtype=float, order="C"),
             self.ends,
             *self._arrays,
             settings.penalty * self.space.extent,

@@ -38,7 +38,7 @@ def shortest_paths(
         space: The free space.
         start: (x, y).
         goal: (x, y).
-        count: How many, at least 1; fewer come back if there are no more.
+        count: How many, at least 1; fewer come back if there are no more, or after 100,000 partial paths.
         visibility: The graph of the space, if it was already built.
 
     Raises:
@@ -63,9 +63,11 @@ def shortest_paths(
             break
         _, length, walk = heappop(heap)
         nodes = taut.edges[list(walk), 1]
+        path = Path(np.vstack((graph.points[graph.start], graph.points[nodes])))
+        if not shapely.LineString(path.points).is_simple:
+            continue
         if nodes[-1] == graph.goal:
-            path = Path(np.vstack((graph.points[graph.start], graph.points[nodes])))
-            if shapely.LineString(path.points).is_simple and space.holds(path.points):
+            if space.holds(path.points):
                 found.append(path.straightened(graph.border.slack))
             continue
         for e in taut.after(walk[-1]):

@@ -107,9 +107,12 @@ class PathPlan:
         }
 
     def __str__(self) -> str:
-        far = (
-            ""
-            if self.gap is None or self.status is PathStatus.OPTIMAL
-            else f", {100 * self.gap:.2f} % above the optimum"
-        )
-        return f"{self.status}: length {self.length:.6g}{far} ({self.method}, {self.evaluations} evaluations)"
+        said = [self.method]
+        if self.evaluations:
+            said.append(f"{self.evaluations} evaluations")
+        if self.evaluations and self.seed is not None:
+            said.append(f"seed {self.seed}")
+        far = ""
+        if self.gap is not None and self.status is not PathStatus.OPTIMAL:
+            far = f", {100 * self.gap:.2f} % above the optimum"
+        return f"{self.status}: length {self.length:.6g}{far} ({', '.join(said)}, {1e3 * self.seconds:.0f} ms)"

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from pin_metaik.mobile import kernels
+from pin_metaik.mobile.paths import visibility_kernels as kernels
 from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.growth import rings
 from pin_metaik.mobile.world.scene import Point
@@ -131,7 +132,20 @@ class Visibility:
         ends = (start[0], start[1], goal[0], goal[1])
         direct = kernels.sees(*ends, *border.arrays, border.bends, border.slack)
         edges[c, c + 1] = edges[c + 1, c] = direct
-        return VisibilityGraph(border, np.vstack((border.vertices[border.corners], start, goal)), edges)
+        points = np.vstack((border.vertices[border.corners], start, goal))
+        return VisibilityGraph(border, points, self._outside(points, edges))
+
+    def _outside(self, points: Array, edges: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Edges (n, n) without those from start and goal, the last two points, that run inside an obstacle.
+
+        Kernels see where a line crosses the border. From one point on it to another, inside, it crosses nothing; at a
+        corner that cannot be, as lines are taut there.
+        """
+        i, j = np.nonzero(edges[-2:])
+        i += len(points) - 2
+        inside = shapely.intersects(self.space.core, shapely.linestrings(np.stack((points[i], points[j]), axis=1)))
+        edges[i[inside], j[inside]] = edges[j[inside], i[inside]] = False
+        return edges
 
 
 def _turns_right(before: Array, here: Array, after: Array, slack: float) -> NDArray[np.bool_]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import ast
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -110,7 +110,7 @@ def read_grid(path: str | Path, *, unknown_blocks: bool = True) -> OccupancyGrid
                 return _ros_map(path, unknown_blocks)
     except OSError as error:
         raise InvalidGeometry(f"cannot read {error.filename or path}: {error.strerror}") from None
-    except (ValueError, SyntaxError, KeyError) as error:
+    except (ValueError, KeyError) as error:
         if isinstance(error, InvalidGeometry):
             raise
         raise InvalidGeometry(f"{path} is not an occupancy grid: {error}") from None
@@ -130,12 +130,13 @@ def _ros_map(path: Path, unknown_blocks: bool) -> OccupancyGrid:
     occupied = darkness > float(settings["occupied_thresh"])
     if unknown_blocks:
         occupied |= darkness >= float(settings["free_thresh"])
-    x, y, yaw = (float(value) for value in ast.literal_eval(settings["origin"]))
+    x, y, yaw = (float(value) for value in settings["origin"].strip("[], ").split(","))
     return OccupancyGrid(occupied[::-1], float(settings["resolution"]), (x, y, yaw))
 
 
 def _flat_yaml(text: str) -> dict[str, str]:
-    """The ``key: value`` lines of a map's YAML, values without quotes."""
+    """The ``key: value`` lines of a map's YAML, values without quotes, a list below its key with commas."""
+    text = re.sub(r"\n\s*-\s+", ",", text)
     lines = (line.partition(" #")[0].partition(":") for line in text.splitlines() if not line.startswith("#"))
     return {key.strip(): value.strip().strip("'\"") for key, colon, value in lines if colon}
 

@@ -14,6 +14,7 @@ from typing import Any
 import shapely
 
 from pin_metaik.errors import InvalidGeometry, UnknownName
+from pin_metaik.mobile.files import read_json
 from pin_metaik.mobile.world.grids import read_grid
 from pin_metaik.mobile.world.polygons import read_polygons
 
@@ -128,12 +129,7 @@ def _shipped() -> dict[str, Traversable]:
 
 
 def _read(path: Path | Traversable) -> Mapping[str, Any]:
-    try:
-        mapping = json.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise InvalidGeometry(f"cannot read {path}: {error.strerror}") from None
-    except ValueError as error:
-        raise InvalidGeometry(f"{path} is not JSON: {error}") from None
+    mapping = read_json(path, InvalidGeometry)
     if not isinstance(mapping, dict):
         raise InvalidGeometry(f"{path} is not a scene: expected an object with start, goal, obstacles, bounds")
     return mapping
