@@ -106,7 +106,7 @@ def convergence(results: Results) -> Section | None:
         return None
 
     def draw(canvas: Any) -> None:
-        figures.convergence(canvas, curves, CURVE * results.record.budget)
+        figures.convergence(canvas, curves, CURVE * results.record.budget, figures.lines(results.methods))
 
     caption = "Median of the best cost so far over all targets and robots; the middle half of the trials is shaded."
     figure = Figure("convergence", caption, draw, figures.panel_size(len(curves)))

@@ -65,23 +65,22 @@ def _grid(count: int) -> tuple[int, int]:
     return columns, -(-count // columns)
 
 
-def distributions(canvas: Any, shares: Mapping[str, Mapping[str, Array]], at: Array, what: str) -> None:
+def distributions(canvas: Any, shares: Mapping[str, Mapping[str, Array]], at: Array, looks: Mapping[str, Line]) -> None:
     """Share of tasks solved within so many evaluations, a panel a case.
 
     Args:
         canvas: An empty ``matplotlib.figure.Figure``.
         shares: Shares (m,) by method by case.
         at: (m,) evaluations.
-        what: Of the vertical axis.
+        looks: How the methods are drawn.
     """
     axes = panels(canvas, list(shares), sharex=True, sharey=True)
-    looks = lines(list(dict.fromkeys(method for panel in shares.values() for method in panel)))
     for case, ax in axes.items():
         for method, share in shares[case].items():
             ax.step(at, share, where="post", label=method, linewidth=1.5, **vars(looks[method]))
         ax.set(xscale="log", ylim=(-0.02, 1.02), xlim=(at[0], at[-1]))
         ax.grid(**GRID)
-    _labelled(canvas, axes, "kernel evaluations", what)
+    _labelled(canvas, axes, "kernel evaluations", "share of trials solved")
 
 
 def rates(canvas: Any, found: Mapping[str, Mapping[str, tuple[float, float, float]]]) -> None:
@@ -102,16 +101,16 @@ def rates(canvas: Any, found: Mapping[str, Mapping[str, tuple[float, float, floa
     _labelled(canvas, axes, "share solved, with its 95 % interval", "", legend=False)
 
 
-def convergence(canvas: Any, curves: Mapping[str, Mapping[str, Array]], at: Array) -> None:
+def convergence(canvas: Any, curves: Mapping[str, Mapping[str, Array]], at: Array, looks: Mapping[str, Line]) -> None:
     """Median of the best cost so far, and the middle half of the trials, a panel a case.
 
     Args:
         canvas: An empty ``matplotlib.figure.Figure``.
         curves: Lower quartile, median and upper quartile (3, m) by method by case.
         at: (m,) evaluations.
+        looks: How the methods are drawn.
     """
     axes = panels(canvas, list(curves), sharex=True, sharey=True)
-    looks = lines(list(dict.fromkeys(method for panel in curves.values() for method in panel)))
     for case, ax in axes.items():
         for method, (low, middle, high) in curves[case].items():
             ax.fill_between(at, low, high, color=looks[method].color, alpha=0.12, linewidth=0)

@@ -12,6 +12,7 @@ from pin_metaik.compare.report.parts import Figure, Section, Table, Value
 from pin_metaik.compare.report.write import need_figures
 
 STYLE = "style.css"
+LONG = 28  # letters of a cell that may be broken
 
 
 def html(title: str, lead: Sequence[str], sections: Sequence[Section]) -> str:
@@ -94,6 +95,8 @@ def _cells(table: Table, kinds: Sequence[str], row: Sequence[Value]) -> str:
         if column.meter and isinstance(value, (int, float)):
             meter = f' style="--share:{100.0 * value:.1f}%"'
             kind = "meter"
+        elif kind == "word" and len(column.text(value)) > LONG:
+            kind = "word long"
         cells.append(f'<td class="{kind}"{meter}>{_code(column.text(value))}</td>')
     return "".join(cells)
 

@@ -77,7 +77,7 @@ def distributions(results: Results, name: str = "ecdf") -> tuple[Figure, ...]:
     }
 
     def draw(canvas: Any) -> None:
-        figures.distributions(canvas, shares, at, "share of trials solved")
+        figures.distributions(canvas, shares, at, figures.lines(results.methods))
 
     caption = (
         "Share of trials solved within so many kernel evaluations (higher and farther left is better). Colour says "
