@@ -7,7 +7,8 @@ import sys
 import typer
 from rich.console import Console
 
-from pin_metaik.cli import demo, plan, reproduce, robots, solve, stewart
+from pin_metaik.cli import compare, demo, plan, reproduce, robots, solve, stewart
+from pin_metaik.cli.many import ManyValues
 from pin_metaik.errors import MetaIKError
 
 SOLVED, NOT_SOLVED, NONSENSE = 0, 1, 2
@@ -25,6 +26,9 @@ app.command("robots")(robots.robots)
 app.command("urdf")(robots.urdf)
 app.command("demo")(demo.demo)
 app.command("reproduce")(reproduce.reproduce)
+app.command("compare", cls=ManyValues)(compare.compare)
+app.command("report")(compare.report)
+app.command("replay")(compare.replay)
 app.command("plan")(plan.plan)
 app.add_typer(stewart.app, name="stewart")
 

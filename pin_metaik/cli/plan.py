@@ -13,7 +13,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from pin_metaik.compare.write import need_figures
+from pin_metaik.compare.report.write import need_figures
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize import ALGORITHMS, AskTell, Budget
 

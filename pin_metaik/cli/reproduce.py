@@ -12,8 +12,8 @@ from rich.console import Console
 
 from pin_metaik.compare import papers
 from pin_metaik.compare.papers import PAPERS, Options, Reproduction
-from pin_metaik.compare.show import show
-from pin_metaik.compare.write import need_figures, write
+from pin_metaik.compare.report.show import show
+from pin_metaik.compare.report.write import need_figures, write
 from pin_metaik.errors import UnknownName
 
 QUICK_RUNS = 3

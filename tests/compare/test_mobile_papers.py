@@ -12,7 +12,7 @@ from pin_metaik.compare.papers.path_planning import SETTINGS, comparison
 from pin_metaik.compare.papers.path_planning_setup import ExactTrial, HitTrial, PathTrial
 from pin_metaik.compare.papers.trajectory_claims import claims
 from pin_metaik.compare.papers.trajectory_setup import PRINTED, Lab, NetTrial, routes, stepped
-from pin_metaik.compare.write import markdown
+from pin_metaik.compare.report.write import markdown
 from pin_metaik.mobile import NOMAD_200
 from pin_metaik.mobile.motion.turn import lead_time
 

@@ -6,9 +6,9 @@ import pytest
 from typer.testing import CliRunner
 
 from pin_metaik import cli
-from pin_metaik.compare import write as writing
 from pin_metaik.compare.papers import aerial_arm
 from pin_metaik.compare.papers.arm import Trial
+from pin_metaik.compare.report import write as writing
 from pin_metaik.errors import MissingExtra, UnknownName
 
 

@@ -4,10 +4,10 @@ import sys
 import pytest
 from rich.console import Console
 
-from pin_metaik.compare import write as writing
 from pin_metaik.compare.report import Column, Figure, Section, Table
-from pin_metaik.compare.show import show
-from pin_metaik.compare.write import markdown, markdown_table, write
+from pin_metaik.compare.report import write as writing
+from pin_metaik.compare.report.show import show
+from pin_metaik.compare.report.write import markdown, markdown_table, write
 from pin_metaik.errors import MissingExtra
 
 TABLE = Table("t", "Costs", (Column("method"), Column("F mm", ".2g")), [("GWO", 1 / 3), ("MTDE", None)])
@@ -59,3 +59,8 @@ def test_without_matplotlib_tables_are_written_and_figures_name_the_extra(tmp_pa
     with pytest.raises(MissingExtra, match=r"pin-metaik\[plots\]"):
         write(tmp_path / "figures", "page", [], [SECTION], figures=True)
     assert not (tmp_path / "figures").exists()
+
+
+def test_a_bar_in_a_cell_does_not_end_it() -> None:
+    table = Table("t", "T", (Column("what"),), [("|x - x0|",)])
+    assert markdown_table(table).splitlines()[-1] == r"| \|x - x0\| |"

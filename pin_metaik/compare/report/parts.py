@@ -16,10 +16,12 @@ class Column:
     Attributes:
         heading: What it holds, with its unit.
         form: Format of its numbers, e.g. ``".3g"``; the CSV file has them in full.
+        meter: Whether its numbers are shares from 0 to 1 that a page may show as bars.
     """
 
     heading: str
     form: str = ""
+    meter: bool = False
 
     def text(self, value: Value) -> str:
         """A value as it is shown; ``None`` is a dash."""

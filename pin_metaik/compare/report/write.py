@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
-from pin_metaik.compare.report import Figure, Section, Table
+from pin_metaik.compare.report.parts import Figure, Section, Table
 from pin_metaik.errors import MissingExtra
 
 DPI = 150
@@ -70,7 +70,8 @@ def markdown_table(table: Table) -> str:
         ["---" if wordy else "---:" for wordy in words],
         *([column.text(value) for column, value in zip(table.columns, row, strict=True)] for row in table.rows),
     ]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    escaped = [[cell.replace("|", r"\|") for cell in line] for line in lines]
+    return "\n".join(f"| {' | '.join(line)} |" for line in escaped)
 
 
 def _write_csv(folder: Path, table: Table) -> Path:

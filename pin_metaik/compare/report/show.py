@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from rich.console import Console
 from rich.table import Table as Grid
 
-from pin_metaik.compare.report import Section, Table
+from pin_metaik.compare.report.parts import Section, Table
 
 
 def show(sections: Iterable[Section], console: Console) -> None:

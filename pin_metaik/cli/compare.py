@@ -1,0 +1,84 @@
+"""``pin-metaik compare``, ``report`` and ``replay``: methods on hard cases, and what became of them."""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from shlex import join
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from pin_metaik.cli.many import split
+from pin_metaik.compare import CASES, Suite, write_report
+from pin_metaik.compare import compare as run
+from pin_metaik.compare import replay as again
+
+INTERRUPTED = 130  # what shells make of Ctrl-C
+
+
+class Backend(StrEnum):
+    """Where the work is done."""
+
+    LOKY = "loky"
+    DASK = "dask"
+
+
+def compare(
+    robot: Annotated[list[str], typer.Option(help="Robots: names, or paths of .urdf and DH .toml files.")],
+    out: Annotated[Path, typer.Option(file_okay=False, help="Folder for the rows; goes on with those that it holds.")],
+    cases: Annotated[list[str], typer.Option(help=f"{', '.join(CASES)}, or module:object.")],
+    methods: Annotated[
+        list[str],
+        typer.Option(
+            help="default; REFINER, REFINER+restarts, SEEDER or SEEDER+REFINER, e.g. lm, lm+restarts, gwo, gwo+dls; "
+            "ikpy, pink, trac_ik or toolbox if installed; or module:object."
+        ),
+    ],
+    targets: Annotated[int, typer.Option(min=1, help="Tasks of each case for each robot.")] = 100,
+    seeds: Annotated[int, typer.Option(min=1, help="Repetitions of each method on each task.")] = 1,
+    budget: Annotated[int, typer.Option(min=1, help="Kernel evaluations for each target.")] = 5000,
+    rng: Annotated[int, typer.Option(min=0, help="Seed of everything random.")] = 0,
+    jobs: Annotated[int, typer.Option(help="Processes; -1: one a core. The rows do not depend on it.")] = 1,
+    backend: Annotated[Backend, typer.Option(help="Processes here, or a Dask cluster.")] = Backend.LOKY,
+    scheduler: Annotated[str | None, typer.Option(help="Of the Dask cluster, e.g. tcp://localhost:8786.")] = None,
+) -> None:
+    """Compare methods on hard cases at equal budgets. Ctrl-C loses nothing: the same command goes on."""
+    sys.path.insert(0, "")  # module:object may be in the folder one is in
+    suite = Suite(split(robot), split(cases), split(methods), targets, seeds, budget, rng)
+    outcome = run(
+        suite,
+        out,
+        jobs=jobs,
+        backend=backend.value,
+        scheduler=scheduler,
+        command=join(["pin-metaik", *sys.argv[1:]]),
+        console=Console(stderr=True),
+    )
+    console = Console(highlight=False)
+    console.print(str(outcome), style="yellow" if outcome.partial else None, markup=False, soft_wrap=True)
+    console.print(f"next: pin-metaik report {out}", markup=False, soft_wrap=True)
+    raise typer.Exit(INTERRUPTED if outcome.partial else 0)
+
+
+def report(folder: Annotated[Path, typer.Argument(help="Folder of a comparison, finished or not.")]) -> None:
+    """Write the report on a comparison: one HTML page, and Markdown with tables and figures beside it."""
+    sys.path.insert(0, "")
+    page, markdown, *others = write_report(folder)
+    print(page)
+    print(markdown, f"and {len(others)} tables and figures")
+
+
+def replay(
+    folder: Annotated[Path, typer.Argument(help="Folder of a comparison.")],
+    trial: Annotated[str, typer.Argument(help="ROBOT/CASE/TARGET/METHOD/SEED, as the report lists them.")],
+) -> None:
+    """Run one trial of a comparison again. Exit code 0: it ends as the row says, 1: it does not."""
+    sys.path.insert(0, "")
+    replayed = again(folder, trial)
+    console = Console(highlight=False)
+    for line in replayed.lines():
+        console.print(line, markup=False, soft_wrap=True)
+    raise typer.Exit(0 if replayed.same else 1)

@@ -1,0 +1,138 @@
+"""What is asked of a method: a case draws tasks for any robot and says what counts as a success."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from pin_metaik.collision import CollisionWorld
+from pin_metaik.compare.method import Answer
+from pin_metaik.ik import IKProblem, IKStatus, Verdict
+from pin_metaik.kinematics import Chain
+from pin_metaik.robots import Robot
+
+Array = NDArray[np.float64]
+
+DRAWS = 10_000  # of a task, before a world is found to leave no room
+REACHED = "Within 1e-5 m and 1e-5 rad of the target and inside the limits, by Pinocchio, whatever the method says."
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """Poses for the frame of a chain, one or several in a row.
+
+    Attributes:
+        chain: The arm.
+        targets: World poses; a method gets one at a time, and starts from its answer to the one before.
+        planted: (K, n) coordinates that reach them, if they were made from some.
+        start: (n,) where to start from; ``None``: anywhere, drawn anew for every seed.
+        world: What must not collide.
+    """
+
+    chain: Chain
+    targets: tuple[pin.SE3, ...]
+    planted: Array | None = None
+    start: Array | None = None
+    world: CollisionWorld | None = None
+
+    @staticmethod
+    def at(chain: Chain, X: Array, start: Array | None = None) -> Task:
+        """To reach the poses of the coordinates X (K, n)."""
+        return Task(chain, tuple(chain.placements(q)[0] for q in chain.q(X)), X, start)
+
+    @property
+    def problems(self) -> list[IKProblem]:
+        """The targets as problems."""
+        return [IKProblem.of(self.chain, pose, self.world) for pose in self.targets]
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """What a method did with a task.
+
+    Attributes:
+        x0: (n,) where it started.
+        answers: One for each target.
+        verdicts: Pinocchio's, one for each answer.
+    """
+
+    x0: Array
+    answers: Sequence[Answer]
+    verdicts: Sequence[Verdict]
+
+    @property
+    def reached(self) -> bool:
+        """Whether every target is met."""
+        return all(verdict.accepted for verdict in self.verdicts)
+
+    @property
+    def unreachable(self) -> bool:
+        """Whether it said of every target that it is out of reach."""
+        return all(answer.status == IKStatus.UNREACHABLE for answer in self.answers)
+
+    @property
+    def X(self) -> Array:
+        """(K, n) the answers."""
+        return np.array([answer.x for answer in self.answers])
+
+
+def travel(chain: Chain, a: Array, b: Array) -> Array:
+    """How far the joints move from a to b (..., n); a continuous one takes the shorter way round."""
+    step = b - a
+    periodic = chain.limits.periodic
+    step[..., periodic] = (step[..., periodic] + np.pi) % (2.0 * np.pi) - np.pi
+    return step
+
+
+def whole_arm(robot: Robot, rng: np.random.Generator) -> Chain:
+    """The joints that move the robot's default frame, as they are."""
+    return Chain(robot.model, robot.frame)
+
+
+def reached(task: Task, attempt: Attempt) -> bool:
+    """Whether every target is met."""
+    return attempt.reached
+
+
+@dataclass(frozen=True)
+class Case:
+    """A family of tasks. One object of this class is all that a case of your own takes.
+
+    Its functions are called with generators that depend on the names of robot and case and on the number of the target
+    alone, so that a task is the same whatever else is compared.
+
+    Attributes:
+        name: What it is called on the command line and in tables.
+        about: How its targets are made, one sentence.
+        draw: A task for a chain.
+        chain: The chain that a robot is asked to move; one for all tasks.
+        world: What the robot stands in; tasks are drawn until what they were made from is free of collisions.
+        judge: Whether an attempt at a task is a success.
+        success: What that means, one sentence.
+    """
+
+    name: str
+    about: str
+    draw: Callable[[Chain, np.random.Generator], Task]
+    chain: Callable[[Robot, np.random.Generator], Chain] = whole_arm
+    world: Callable[[Robot], CollisionWorld] | None = None
+    judge: Callable[[Task, Attempt], bool] = reached
+    success: str = REACHED
+
+    def task(self, chain: Chain, world: CollisionWorld | None, rng: np.random.Generator) -> Task:
+        """The task that a generator leads to.
+
+        Raises:
+            RuntimeError: In so many draws nothing is free of collisions.
+        """
+        if world is None:
+            return self.draw(chain, rng)
+        for _ in range(DRAWS):
+            task = self.draw(chain, rng)
+            if task.planted is None or not any(world.checker.collides(q) for q in chain.q(task.planted)):
+                return replace(task, world=world)
+        raise RuntimeError(f"none of {DRAWS:,} tasks is free of collisions")

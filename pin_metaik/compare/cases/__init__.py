@@ -1,0 +1,30 @@
+"""The cases: one file and one line each."""
+
+from __future__ import annotations
+
+from pin_metaik.compare.case import Case
+from pin_metaik.compare.cases.at_limits import AT_LIMITS
+from pin_metaik.compare.cases.boundary import BOUNDARY
+from pin_metaik.compare.cases.calibrated import CALIBRATED
+from pin_metaik.compare.cases.cluttered import CLUTTERED
+from pin_metaik.compare.cases.five_dof import FIVE_DOF
+from pin_metaik.compare.cases.just_out_of_reach import JUST_OUT_OF_REACH
+from pin_metaik.compare.cases.minimal_displacement import MINIMAL_DISPLACEMENT
+from pin_metaik.compare.cases.near_limit import NEAR_LIMIT
+from pin_metaik.compare.cases.path import PATH
+from pin_metaik.compare.cases.random_poses import RANDOM
+from pin_metaik.compare.cases.singular import SINGULAR_POSES
+
+CASES: dict[str, Case] = {
+    "random": RANDOM,
+    "near_limit": NEAR_LIMIT,
+    "at_limits": AT_LIMITS,
+    "singular": SINGULAR_POSES,
+    "boundary": BOUNDARY,
+    "just_out_of_reach": JUST_OUT_OF_REACH,
+    "minimal_displacement": MINIMAL_DISPLACEMENT,
+    "cluttered": CLUTTERED,
+    "five_dof": FIVE_DOF,
+    "calibrated": CALIBRATED,
+    "path": PATH,
+}

@@ -1,0 +1,58 @@
+"""What is compared: anything that answers an inverse-kinematics problem within a budget of kernel evaluations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.ik import IKProblem
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What a method says.
+
+    Attributes:
+        x: (n,) its coordinates, the best it has whether it solved the problem or not.
+        claimed: Whether it says that it solved the problem; Pinocchio will check.
+        evaluations: Kernel evaluations spent: 1 for forward kinematics, ``FK_WITH_JACOBIAN`` with a Jacobian. None when
+            the method does not tell.
+        status: How it ended, in its own words; ``"UNREACHABLE"`` when it says that nobody could.
+        trace: (g, 2) evaluations and best cost so far, when it has them.
+    """
+
+    x: Array
+    claimed: bool
+    evaluations: int | None
+    status: str = ""
+    trace: Array | None = None
+
+
+@runtime_checkable
+class Method(Protocol):
+    """A method. One object with a name and this call is all that a method of your own takes.
+
+    Attributes:
+        name: What it is called in tables.
+    """
+
+    @property
+    def name(self) -> str:
+        """What it is called in tables."""
+        ...
+
+    def solve(self, problem: IKProblem, x0: Array, budget: int, rng: np.random.Generator) -> Answer:
+        """Answer a problem.
+
+        Args:
+            problem: One target for the one frame of ``problem.chain``.
+            x0: (n,) coordinates to start from.
+            budget: Kernel evaluations that may be spent.
+            rng: The only source of randomness.
+        """
+        ...

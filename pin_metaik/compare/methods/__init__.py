@@ -1,0 +1,43 @@
+"""The methods by name: the Jacobian family, metaheuristics, hybrids, the default solver, and other people's solvers."""
+
+from __future__ import annotations
+
+from pin_metaik.compare.method import Method
+from pin_metaik.compare.methods.peers import PEERS
+from pin_metaik.compare.methods.solvers import Default, Rounds, Search
+from pin_metaik.errors import UnknownName
+from pin_metaik.ik import REFINERS
+from pin_metaik.optimize import ALGORITHMS
+
+ALIASES = {"lm": "lm_chan"}
+REFINEMENTS = {name: name for name in REFINERS} | ALIASES
+
+METHODS: dict[str, Method] = {
+    "default": Default("default"),
+    "default_nearest": Default("default_nearest", "nearest"),
+    **{name: Search(name, None, refiner, starts=1) for name, refiner in REFINEMENTS.items()},
+    **{f"{name}+restarts": Search(f"{name}+restarts", None, refiner) for name, refiner in REFINEMENTS.items()},
+    **{name: Search(name, name) for name in ALGORITHMS},
+    **{f"{a}+{name}": Search(f"{a}+{name}", a, refiner) for a in ALGORITHMS for name, refiner in REFINEMENTS.items()},
+    **PEERS,
+}
+
+ROUND = "@"  # as in gwo@120+dls: rounds of 120 evaluations
+
+
+def named(name: str) -> Method:
+    """A method by its name; of a hybrid the evaluations of a round may be given: ``gwo@120+dls``.
+
+    Raises:
+        UnknownName: There is none.
+    """
+    seeder, at, rest = name.partition(ROUND)
+    size, _, refiner = rest.partition("+")
+    if at and size.isdecimal() and seeder in ALGORITHMS and refiner in REFINEMENTS:
+        return Rounds(name, seeder, REFINEMENTS[refiner], int(size))
+    if name not in METHODS:
+        raise UnknownName("method", name, METHODS)
+    return METHODS[name]
+
+
+__all__ = ["METHODS", "Default", "Rounds", "Search", "named"]

@@ -1,0 +1,119 @@
+"""What was compared, in plain words: enough to report on it, and the names to run it again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from pin_metaik.compare.case import Case
+from pin_metaik.compare.method import Method
+from pin_metaik.compare.suite import Suite
+from pin_metaik.compare.trial import Trial
+from pin_metaik.errors import InvalidSetting
+
+
+@dataclass(frozen=True)
+class CaseRecord:
+    """A case.
+
+    Attributes:
+        name: What it is called in rows.
+        spec: What it was asked for by.
+        about: How its targets are made.
+        success: What counts as one.
+    """
+
+    name: str
+    spec: str
+    about: str
+    success: str
+
+
+@dataclass(frozen=True)
+class Record:
+    """A comparison.
+
+    Attributes:
+        robots: What each was asked for by, by the name in rows.
+        cases: The cases by name.
+        methods: What each was asked for by, by name; its name, when it came as an object.
+        targets: Tasks of each case for each robot.
+        seeds: Repetitions of each method on each task.
+        budget: Kernel evaluations for each target.
+        rng: Seed of everything random.
+    """
+
+    robots: dict[str, str]
+    cases: dict[str, CaseRecord]
+    methods: dict[str, str]
+    targets: int
+    seeds: int
+    budget: int
+    rng: int
+
+    @staticmethod
+    def of(suite: Suite) -> Record:
+        """What there is to know of a comparison."""
+        cases = zip(_specs(suite.cases), suite.tasks.values(), strict=True)
+        return Record(
+            suite.arms,
+            {case.name: CaseRecord(case.name, spec, case.about, case.success) for spec, case in cases},
+            dict(zip(suite.entrants, _specs(suite.methods), strict=True)),
+            suite.targets,
+            suite.seeds,
+            suite.budget,
+            suite.rng,
+        )
+
+    @staticmethod
+    def from_json(values: dict[str, Any]) -> Record:
+        """What ``to_json`` made."""
+        cases = {name: CaseRecord(**case) for name, case in values["cases"].items()}
+        return Record(**{**values, "cases": cases})
+
+    def to_json(self) -> dict[str, Any]:
+        """As plain values."""
+        return asdict(self)
+
+    def suite(self) -> Suite:
+        """The comparison, to be run; raises what ``Suite`` does where names mean nothing any more."""
+        specs = [case.spec for case in self.cases.values()]
+        numbers = (self.targets, self.seeds, self.budget, self.rng)
+        return Suite(tuple(self.robots.values()), tuple(specs), tuple(self.methods.values()), *numbers)
+
+    @property
+    def trials(self) -> int:
+        """How many rows it has."""
+        return len(self.robots) * len(self.cases) * len(self.methods) * self.targets * self.seeds
+
+    def holds(self, trial: Trial) -> bool:
+        """Whether a row is one of this comparison's."""
+        named = trial.robot in self.robots and trial.case in self.cases and trial.method in self.methods
+        return named and trial.target < self.targets and trial.seed < self.seeds
+
+    def check_grown_from(self, before: Record, where: object) -> None:
+        """Make sure that all rows of an earlier comparison are rows of this one.
+
+        Raises:
+            InvalidSetting: The budget or the seed has changed, or something is left out.
+        """
+        for name in ("budget", "rng"):
+            if getattr(before, name) != getattr(self, name):
+                raise InvalidSetting(
+                    f"{where} holds a comparison with --{name} {getattr(before, name)}, not {getattr(self, name)}: "
+                    "repeat that, or choose another folder"
+                )
+        for name in ("robots", "cases", "methods"):
+            left_out = [word for word in getattr(before, name) if word not in getattr(self, name)]
+            if left_out:
+                raise InvalidSetting(f"{where} has rows of {name} {', '.join(left_out)}: name them, too, to go on")
+        for name in ("targets", "seeds"):
+            if getattr(self, name) < getattr(before, name):
+                raise InvalidSetting(
+                    f"{where} holds a comparison with {getattr(before, name)} {name}: ask for as many, or more"
+                )
+
+
+def _specs(asked: Iterable[str | Case | Method]) -> list[str]:
+    return [one if isinstance(one, str) else one.name for one in asked]

@@ -1,0 +1,135 @@
+"""A section for each case: who solved how much for what, robot by robot, and every method against every other."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.compare.record import CaseRecord
+from pin_metaik.compare.report import figures
+from pin_metaik.compare.report.overview import SPENT, in_words, spent
+from pin_metaik.compare.report.parts import Column, Figure, Section, Table, Value
+from pin_metaik.compare.results import Results, summarise
+from pin_metaik.compare.statistics import Pair, compare_all, friedman
+from pin_metaik.compare.trial import CURVE
+
+Array = NDArray[np.float64]
+
+
+def by_case(results: Results, case: CaseRecord) -> Section:
+    """All there is to know of one case."""
+    costs = results.costs(case.name)
+    test = friedman(costs)
+    pairs = compare_all(results.counted, costs)
+    text = (
+        case.about,
+        case.success,
+        f"Friedman's test over {test.blocks:,} tasks: chi squared = {test.statistic:.4g}, {in_words(test.p)}.",
+    )
+    ranks = dict(zip(results.counted, test.ranks.tolist(), strict=True))
+    rows: list[tuple[Value, ...]] = []
+    for method in results.methods:
+        whole = summarise(results.of(case=case.name, method=method))
+        by_robot = [summarise(results.of(robot=robot, case=case.name, method=method)).rate for robot in results.robots]
+        rows.append((method, ranks.get(method), *spent(whole), *by_robot))
+    columns = (
+        Column("method"),
+        Column("mean rank", ".2f"),
+        *SPENT,
+        *(Column(f"{robot}", ".1%") for robot in results.robots),
+    )
+    tables = (Table(f"case_{case.name}", "All robots together; the last columns robot by robot", columns, rows),)
+    return Section(f"Case: {case.name}", text, (*tables, *_pairs(case.name, pairs)))
+
+
+def rates(results: Results) -> tuple[Figure, ...]:
+    """Solve rates with their intervals."""
+    found: dict[str, dict[str, tuple[float, float, float]]] = {}
+    for case in results.cases:
+        for method in results.methods:
+            summary = summarise(results.of(case=case, method=method))
+            found.setdefault(case, {})[method] = (summary.rate, *summary.interval)
+
+    def draw(canvas: Any) -> None:
+        figures.rates(canvas, found)
+
+    width, height = figures.panel_size(len(found))
+    height *= max(1.0, len(results.methods) / 12.0)
+    caption = "Share of trials solved (dot) with its 95 % Wilson interval (bar), all robots together."
+    return (Figure("rates", caption, draw, (width, height)),)
+
+
+def duels(results: Results) -> tuple[Figure, ...]:
+    """Every method against every other."""
+    k = len(results.counted)
+    ratios: dict[str, Array] = {}
+    certain: dict[str, NDArray[np.bool_]] = {}
+    for case in results.cases:
+        costs = results.costs(case)
+        if k < 2 or not len(costs):
+            continue
+        logs = np.log10(costs)
+        ratios[case] = np.median(logs[:, :, None] - logs[:, None, :], axis=0)
+        certain[case] = np.eye(k, dtype=bool)
+        for pair in compare_all(results.counted, costs):
+            i, j = results.counted.index(pair.a), results.counted.index(pair.b)
+            certain[case][i, j] = certain[case][j, i] = pair.significant
+    if not ratios:
+        return ()
+
+    def draw(canvas: Any) -> None:
+        figures.duels(canvas, results.counted, ratios, certain)
+
+    width, height = figures.panel_size(len(ratios))
+    caption = (
+        "Evaluations that the method of a row takes, compared with that of a column: blue is fewer, red is more "
+        "(median over tasks). A cross: the difference is not significant (Wilcoxon, Holm, 0.05)."
+    )
+    return (Figure("duels", caption, draw, (width, height + 1.0)),)
+
+
+def convergence(results: Results) -> Section | None:
+    """Best cost against evaluations, of the methods that keep it; None if none does."""
+    curves: dict[str, dict[str, Array]] = {}
+    for case in results.cases:
+        for method in results.methods:
+            kept = [trial.curve for trial in results.of(case=case, method=method) if trial.curve is not None]
+            if kept:
+                table = np.array(kept, dtype=float)  # (trials, m), NaN before the first generation
+                known = ~np.isnan(table).any(axis=0)
+                quartiles = np.full((3, len(CURVE)), np.nan)
+                quartiles[:, known] = np.quantile(table[:, known], [0.25, 0.5, 0.75], axis=0)
+                curves.setdefault(case, {})[method] = quartiles
+    if not curves:
+        return None
+
+    def draw(canvas: Any) -> None:
+        figures.convergence(canvas, curves, CURVE * results.record.budget, figures.lines(results.methods))
+
+    caption = "Median of the best cost so far over all targets and robots; the middle half of the trials is shaded."
+    figure = Figure("convergence", caption, draw, figures.panel_size(len(curves)))
+    text = (
+        "Metaheuristics alone: the distance in metres plus the angle in radians that is left. A pose counts as met at "
+        "1e-5. Compiled descents keep no trace of their way.",
+    )
+    return Section("Convergence", text, (), (figure,))
+
+
+def _pairs(case: str, pairs: list[Pair]) -> tuple[Table, ...]:
+    rows: list[tuple[Value, ...]] = [
+        (p.a, p.b, p.better, p.worse, p.ratio, p.p, p.adjusted) for p in sorted(pairs, key=lambda pair: pair.adjusted)
+    ]
+    columns = (
+        Column("a"),
+        Column("b"),
+        Column("a quicker on", ","),
+        Column("b quicker on", ","),
+        Column("evaluations a / b", ".3g"),
+        Column("p", ".2g"),
+        Column("p, Holm", ".2g"),
+    )
+    return (
+        (Table(f"pairs_{case}", "Every pair: Wilcoxon's signed-rank test", columns, rows, shown=False),) if rows else ()
+    )

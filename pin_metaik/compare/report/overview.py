@@ -1,0 +1,150 @@
+"""The first sections of a comparison's report: what was compared, how it ended in short, and who won and lost where."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.compare.cost import FK_WITH_JACOBIAN
+from pin_metaik.compare.report import figures
+from pin_metaik.compare.report.parts import Column, Figure, Section, Table, Value
+from pin_metaik.compare.results import Results, Summary, summarise
+from pin_metaik.compare.statistics import compare_pairs, ecdf, friedman
+
+Array = NDArray[np.float64]
+
+POINTS = 240  # of a distribution's drawing
+
+SPENT = (
+    Column("solved", ".1%", meter=True),
+    Column("95 % interval"),
+    Column("evaluations, median", ",.0f"),
+    Column("p95", ",.0f"),
+    Column("CPU ms, median", ".2f"),
+    Column("p95", ".2f"),
+)
+
+
+def spent(summary: Summary) -> tuple[Value, ...]:
+    """Values of the columns ``SPENT``."""
+    evaluations = summary.evaluations or (None, None)
+    seconds = (None, None) if summary.seconds is None else tuple(1e3 * value for value in summary.seconds)
+    return (summary.rate if summary.trials else None, interval(summary), *evaluations, *seconds)
+
+
+def interval(summary: Summary) -> str:
+    """The 95 % interval of a rate, in percent; one word, so that no table breaks it."""
+    low, high = summary.interval
+    return f"{100.0 * low:.1f}–{100.0 * high:.1f}"
+
+
+def in_words(p: float) -> str:
+    """A p-value; what is too small for a float is said to be so."""
+    return f"p = {p:.2g}" if p > 0.0 else "p < 1e-300"
+
+
+def overview(results: Results) -> Section:
+    """How every method fared, over all robots and cases."""
+    costs = np.concatenate([results.costs(case) for case in results.cases])
+    test = friedman(costs)
+    ranks = dict(zip(results.counted, test.ranks.tolist(), strict=True))
+    summaries = {method: summarise(results.of(method=method)) for method in results.methods}
+    order = sorted(results.methods, key=lambda m: (ranks.get(m, np.inf), -summaries[m].rate))
+    rows = [(method, ranks.get(method), *spent(summaries[method])) for method in order]
+    table = Table(
+        "overview",
+        "All robots and cases together, the best mean rank first",
+        (Column("method"), Column("mean rank", ".2f"), *SPENT),
+        rows,
+    )
+    text = (
+        "Evaluations are those of the solved trials, processor time that of all. The rank is by evaluations to "
+        "solution on each task, 1 being the best; who did not solve it shares the last place.",
+        f"Friedman's test over {test.blocks:,} tasks: chi squared = {test.statistic:.4g}, {in_words(test.p)}.",
+    )
+    return Section("In short", text, (table,), distributions(results))
+
+
+def distributions(results: Results, name: str = "ecdf") -> tuple[Figure, ...]:
+    """Share of tasks solved against evaluations, a panel a case."""
+    if not results.trials or not results.counted:
+        return ()
+    at = np.geomspace(4.0, max(trial.allowed for trial in results.trials), POINTS)
+    shares = {
+        case: {method: ecdf(results.spent(case, method), at) for method in results.counted} for case in results.cases
+    }
+
+    def draw(canvas: Any) -> None:
+        figures.distributions(canvas, shares, at, figures.lines(results.methods))
+
+    caption = (
+        "Share of trials solved within so many kernel evaluations (higher and farther left is better). Colour says "
+        "where starts come from, the style of the line what follows."
+    )
+    return (Figure(name, caption, draw, figures.panel_size(len(shares))),)
+
+
+def winners(results: Results) -> Section:
+    """Who won and who lost, by case and robot."""
+    rows: list[tuple[Value, ...]] = []
+    for case in results.cases:
+        for robot in results.robots:
+            costs = results.costs(case, robot)
+            if not len(costs):
+                continue
+            ranks = friedman(costs).ranks
+            best = int(np.argmin(ranks))
+            others = [i for i in range(len(ranks)) if i != best]
+            names = results.counted
+            pairs = compare_pairs([(names[i], names[best], costs[:, i], costs[:, best]) for i in others])
+            equals = ", ".join(pair.a for pair in pairs if not pair.significant) or "nobody"
+            rates = {
+                method: summarise(results.of(robot=robot, case=case, method=method)).rate for method in results.methods
+            }
+            least = min(rates.values())
+            losers = ", ".join(method for method, rate in rates.items() if rate == least) if least < 1.0 else None
+            rows.append((case, robot, names[best], rates[names[best]], equals, losers, least))
+    columns = (
+        Column("case"),
+        Column("robot"),
+        Column("winner"),
+        Column("it solved", ".1%"),
+        Column("not to be told from it"),
+        Column("solved least"),
+        Column("they solved", ".1%"),
+    )
+    text = (
+        "The winner has the best mean rank by evaluations to solution. Not to be told from it: those that differ from "
+        "it with p >= 0.05 in Wilcoxon's signed-rank test, by Holm for all methods at once.",
+    )
+    return Section("Winners and losers", text, (Table("winners", "By case and robot", columns, rows),))
+
+
+def reading(results: Results) -> Section:
+    """What was compared and what the words mean."""
+    record = results.record
+    sizes = (
+        f"{len(results.methods)} methods on {len(results.cases)} cases and {len(results.robots)} robots "
+        f"({', '.join(results.robots)}), {record.targets} targets each, "
+        f"{record.seeds} {'seed' if record.seeds == 1 else 'seeds'}: {len(results.trials):,} trials."
+    )
+    text: tuple[str, ...] = (
+        sizes,
+        f"Every trial may spend {record.budget:,} kernel evaluations on a target: forward kinematics count 1, forward "
+        f"kinematics with a Jacobian {FK_WITH_JACOBIAN:g}, as measured. Who spends more has not solved it. All methods "
+        "get the same targets and, in the same repetition, the same start.",
+        "`lm` is Levenberg-Marquardt (Chan) from the given start alone, `lm+restarts` goes on from random ones; `dls` "
+        "is the compiled damped least squares with limits inside the step, `qp` a quadratic program a step. `gwo` is a "
+        "metaheuristic alone, `gwo+dls` lets it find starts (a quarter of what is left of the budget, then its eight "
+        "best points are refined, and again). `default` is `solve_ik` as it comes.",
+    )
+    silent = [method for method in results.methods if method not in results.counted]
+    if silent:
+        text += (f"Not ranked, as they do not tell what they spend: {', '.join(silent)}.",)
+    if len(results.trials) < record.trials:
+        text += (f"PARTIAL: {len(results.trials):,} of {record.trials:,} trials are done.",)
+    columns = (Column("case"), Column("targets"), Column("counts as solved"))
+    rows: list[tuple[Value, ...]] = [(case.name, case.about, case.success) for case in results.cases.values()]
+    return Section("What was compared", text, (Table("cases", "Cases", columns, rows),))

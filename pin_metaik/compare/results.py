@@ -1,0 +1,151 @@
+"""The rows of a comparison, arranged for statistics."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.compare.record import CaseRecord, Record
+from pin_metaik.compare.statistics import wilson
+from pin_metaik.compare.trial import Trial
+
+Array = NDArray[np.float64]
+
+PENALTY = 10.0  # an unsolved trial costs this many times what was allowed ("PAR10")
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What became of some trials.
+
+    Attributes:
+        trials: How many.
+        solved: How many of them are successes.
+        evaluations: Median and 95th percentile of the kernel evaluations of the solved ones; None without any.
+        seconds: Median and 95th percentile of the processor time of all of them, s.
+        false_claims: How many said that they solved it and had not.
+        errors: How many raised an error.
+    """
+
+    trials: int
+    solved: int
+    evaluations: tuple[float, float] | None
+    seconds: tuple[float, float] | None
+    false_claims: int
+    errors: int
+
+    @property
+    def rate(self) -> float:
+        """Share of successes."""
+        return self.solved / self.trials if self.trials else 0.0
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Its 95 % interval."""
+        return wilson(self.solved, self.trials)
+
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """A comparison's rows.
+
+    Attributes:
+        record: What was asked for.
+        trials: The rows that there are.
+    """
+
+    record: Record
+    trials: Sequence[Trial]
+
+    @property
+    def robots(self) -> list[str]:
+        """Names of the robots."""
+        return list(self.record.robots)
+
+    @property
+    def cases(self) -> dict[str, CaseRecord]:
+        """The cases by name."""
+        return self.record.cases
+
+    @property
+    def methods(self) -> list[str]:
+        """Names of the methods."""
+        return list(self.record.methods)
+
+    @cached_property
+    def counted(self) -> list[str]:
+        """Names of the methods that tell how many evaluations they spend: only these can be ranked by them."""
+        silent = {trial.method for trial in self.trials if trial.evaluations is None and trial.error is None}
+        return [method for method in self.methods if method not in silent]
+
+    def of(self, *, robot: str | None = None, case: str | None = None, method: str | None = None) -> list[Trial]:
+        """The rows of a robot, a case, a method."""
+        if method is None:
+            groups: Iterable[list[Trial]] = self._groups.values()
+            return [t for group in groups for t in group if robot in (None, t.robot) and case in (None, t.case)]
+        robots = self.robots if robot is None else [robot]
+        cases = list(self.cases) if case is None else [case]
+        return [t for r in robots for c in cases for t in self._groups.get((r, c, method), ())]
+
+    def spent(self, case: str, method: str) -> Array:
+        """Evaluations to solution of each row, ``inf`` of unsolved ones."""
+        rows = self.of(case=case, method=method)
+        return np.array(
+            [t.evaluations if t.solved and t.evaluations is not None else np.inf for t in rows], dtype=float
+        )
+
+    def costs(self, case: str, robot: str | None = None) -> Array:
+        """Costs (b, k) of the methods that can be ranked, on every task of a case that all of them tried.
+
+        A trial costs its evaluations, at least 1, if it solved the task, otherwise ten times what was allowed; several
+        seeds are taken together by the geometric mean.
+        """
+        table: dict[tuple[str, int], dict[str, list[float]]] = {}
+        for method in self.counted:
+            for trial in self.of(robot=robot, case=case, method=method):
+                table.setdefault((trial.robot, trial.target), {}).setdefault(method, []).append(cost(trial))
+        whole = [
+            [float(np.exp(np.mean(np.log(row[method])))) for method in self.counted]
+            for row in table.values()
+            if len(row) == len(self.counted) and len({len(costs) for costs in row.values()}) == 1
+        ]
+        return np.array(whole).reshape(-1, len(self.counted))
+
+    @cached_property
+    def _groups(self) -> dict[tuple[str, str, str], list[Trial]]:
+        groups: dict[tuple[str, str, str], list[Trial]] = {}
+        for trial in sorted(self.trials, key=lambda trial: (trial.target, trial.seed)):
+            if self.record.holds(trial):
+                groups.setdefault((trial.robot, trial.case, trial.method), []).append(trial)
+        return groups
+
+
+def cost(trial: Trial) -> float:
+    """What a trial costs: its evaluations, or ten times what was allowed."""
+    if trial.solved and trial.evaluations is not None:
+        return max(1.0, float(trial.evaluations))
+    return PENALTY * trial.allowed
+
+
+def summarise(trials: Sequence[Trial]) -> Summary:
+    """What became of these trials."""
+    solved = [trial for trial in trials if trial.solved]
+    return Summary(
+        trials=len(trials),
+        solved=len(solved),
+        evaluations=_median_and_tail([t.evaluations for t in solved if t.evaluations is not None]),
+        seconds=_median_and_tail([t.seconds for t in trials if t.seconds is not None]),
+        false_claims=sum(trial.claimed and not trial.met for trial in trials),
+        errors=sum(trial.error is not None for trial in trials),
+    )
+
+
+def _median_and_tail(values: Sequence[float]) -> tuple[float, float] | None:
+    if not values:
+        return None
+    median, tail = np.quantile(np.asarray(values, dtype=float), [0.5, 0.95])
+    return float(median), float(tail)

@@ -1,0 +1,134 @@
+"""The rows of a comparison on disk: appended to a JSON Lines file one by one, and a Parquet file of all at the end."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from pin_metaik.compare.record import Record
+from pin_metaik.compare.results import Results
+from pin_metaik.compare.trial import Trial
+from pin_metaik.errors import InvalidSetting, MissingExtra
+
+ROWS, PARQUET, RECORD = "rows.jsonl", "rows.parquet", "suite.json"
+
+
+def need_parquet() -> None:
+    """Make sure a Parquet file can be written, before a comparison runs for minutes.
+
+    Raises:
+        MissingExtra: pyarrow is not installed.
+    """
+    if find_spec("pyarrow") is None:
+        raise MissingExtra("writing Parquet", "compare")
+
+
+def open_record(folder: Path, record: Record) -> None:
+    """Make the folder for a comparison, or go on with the one in it, which may have grown.
+
+    Raises:
+        InvalidSetting: The folder holds rows of another budget or seed, or of more than is asked for now.
+    """
+    if (folder / RECORD).exists():
+        record.check_grown_from(read_record(folder), folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    replace_text(folder / RECORD, json.dumps(record.to_json(), indent=2) + "\n")
+
+
+def read_record(folder: Path) -> Record:
+    """The comparison of a folder.
+
+    Raises:
+        InvalidSetting: The folder holds none.
+    """
+    path = folder / RECORD
+    if not path.exists():
+        raise InvalidSetting(f"{folder} holds no comparison: make one with pin-metaik compare --out {folder}")
+    return Record.from_json(json.loads(path.read_text(encoding="utf-8")))
+
+
+def read_rows(folder: Path) -> list[Trial]:
+    """The rows so far; a last line that was cut off while it was written is left out.
+
+    Raises:
+        InvalidSetting: A line in the middle is no row.
+    """
+    path = folder / ROWS
+    if not path.exists():
+        return []
+    lines = path.read_bytes().split(b"\n")[:-1]
+    rows: dict[tuple[Any, ...], Trial] = {}
+    for number, line in enumerate(lines, start=1):
+        try:
+            trial = Trial.of(json.loads(line))
+        except (ValueError, TypeError, KeyError):
+            raise InvalidSetting(f"line {number} of {path} is no row: take it out to go on") from None
+        rows.setdefault(trial.key, trial)
+    return list(rows.values())
+
+
+def read_results(folder: Path) -> Results:
+    """The comparison of a folder and its rows so far, for statistics.
+
+    Raises:
+        InvalidSetting: The folder holds none, or a line in the middle is no row.
+    """
+    return Results(read_record(folder), read_rows(folder))
+
+
+class Appender:
+    """Appends rows to the file of a folder, whole lines at a time; each is with the operating system at once."""
+
+    def __init__(self, folder: Path) -> None:
+        self._path = folder / ROWS
+
+    def __enter__(self) -> Appender:
+        """Cut off what a killed writer left half-written, and open the file."""
+        self._path.touch()
+        with self._path.open("r+b") as file:
+            text = file.read()
+            file.truncate(text.rfind(b"\n") + 1)
+        self._file = self._path.open("ab", buffering=0)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._file.close()
+
+    def add(self, trials: Iterable[Trial]) -> None:
+        """Append rows in one write."""
+        lines = (json.dumps(trial.row(), allow_nan=False, separators=(",", ":")) for trial in trials)
+        self._file.write("".join(f"{line}\n" for line in lines).encode())
+
+
+def write_parquet(folder: Path, trials: Iterable[Trial]) -> Path:
+    """Write all rows, sorted by their names, as Parquet.
+
+    Raises:
+        MissingExtra: pyarrow is not installed.
+    """
+    need_parquet()
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    text, number, real, truth = pa.string(), pa.int64(), pa.float64(), pa.bool_()
+    types = {
+        "robot": text, "case": text, "method": text, "target": number, "seed": number, "allowed": number,
+        "solved": truth, "met": truth, "claimed": truth, "status": text, "error": text, "position_error": real,
+        "orientation_error": real, "displacement": real, "evaluations": number, "x": pa.list_(real),
+        "curve": pa.list_(real), "seconds": real,
+    }  # fmt: skip
+    rows = [trial.row() for trial in sorted(trials, key=lambda trial: trial.key)]
+    path = folder / PARQUET
+    partial = path.with_suffix(".partial")
+    parquet.write_table(pa.Table.from_pylist(rows, pa.schema(list(types.items()))), partial)
+    return partial.replace(path)
+
+
+def replace_text(path: Path, text: str) -> None:
+    """Write a file as a whole or not at all."""
+    partial = path.with_suffix(".partial")
+    partial.write_text(text, encoding="utf-8")
+    partial.replace(path)

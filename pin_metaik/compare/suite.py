@@ -1,0 +1,94 @@
+"""What is compared: robots, cases and methods, how many targets and seeds, and the budget of each trial."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator, Sequence, Set
+from dataclasses import dataclass, field
+from typing import Any
+
+from pin_metaik.compare.case import Case
+from pin_metaik.compare.lookup import case_of, method_of
+from pin_metaik.compare.method import Method
+from pin_metaik.compare.methods.peers import Peer
+from pin_metaik.compare.unit import Unit
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.robots import load_robot
+
+
+@dataclass(frozen=True)
+class Suite:
+    """A comparison.
+
+    Attributes:
+        robots: What ``load_robot`` takes.
+        cases: Names, ``"module:object"``, or cases themselves.
+        methods: Names, ``"module:object"``, or methods themselves.
+        targets: Tasks of each case for each robot.
+        seeds: Repetitions of each method on each task.
+        budget: Kernel evaluations for each target.
+        rng: Seed of everything random.
+
+    Raises:
+        UnknownName: A robot, case or method that there is not.
+        InvalidSetting: Nothing to compare, a number below one, or two of the same name.
+        MissingExtra: A peer that is not installed.
+    """
+
+    robots: tuple[str, ...]
+    cases: tuple[str | Case, ...]
+    methods: tuple[str | Method, ...]
+    targets: int = 100
+    seeds: int = 1
+    budget: int = 5000
+    rng: int = 0
+    arms: dict[str, str] = field(init=False, repr=False)  # robots by name
+    tasks: dict[str, Case] = field(init=False, repr=False)
+    entrants: dict[str, Method] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        for what in ("targets", "seeds", "budget"):
+            if getattr(self, what) < 1:
+                raise InvalidSetting(f"{what} is at least 1, got {getattr(self, what)}")
+        labels = [load_robot(robot).name for robot in self.robots]
+        object.__setattr__(self, "arms", _named("robot", labels, self.robots))
+        cases = [case_of(case) for case in self.cases]
+        object.__setattr__(self, "tasks", _named("case", [case.name for case in cases], cases))
+        methods = [method_of(method) for method in self.methods]
+        object.__setattr__(self, "entrants", _named("method", [method.name for method in methods], methods))
+        for method in methods:
+            if isinstance(method, Peer):
+                method.need()
+
+    @property
+    def trials(self) -> int:
+        """How many rows it has."""
+        return len(self.arms) * len(self.tasks) * len(self.entrants) * self.targets * self.seeds
+
+    def units(self, done: Set[tuple[str, str, str, int, int]] = frozenset()) -> Iterator[Unit]:
+        """The work that is left, a task at a time."""
+        for (robot, spec), case, target in itertools.product(
+            self.arms.items(), self.tasks.values(), range(self.targets)
+        ):
+            left = [
+                (method, seed)
+                for method in self.entrants.values()
+                for seed in range(self.seeds)
+                if (robot, case.name, method.name, target, seed) not in done
+            ]
+            if left:
+                yield Unit(robot, spec, case, target, tuple(left), self.budget, self.rng)
+
+
+def _named(kind: str, names: Sequence[str], things: Iterable[Any]) -> dict[str, Any]:
+    """Things by name.
+
+    Raises:
+        InvalidSetting: None at all, or two of the same name.
+    """
+    if not names:
+        raise InvalidSetting(f"name at least one {kind} to compare")
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise InvalidSetting(f"two {kind}s are called {twice[0]!r}: rows could not tell them apart")
+    return dict(zip(names, things, strict=True))

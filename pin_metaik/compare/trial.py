@@ -1,0 +1,183 @@
+"""One trial: a method, once, on one task. Its row depends on its names and numbers, not on what ran before it."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from time import process_time
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.compare.case import Attempt, Case, Task, travel
+from pin_metaik.compare.method import Answer, Method
+from pin_metaik.ik import IKProblem
+
+Array = NDArray[np.float64]
+
+CURVE = np.geomspace(0.005, 1.0, 32)  # shares of the budget at which a row keeps the best cost so far
+TIMES = ("seconds",)  # what no two runs have in common
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A row of a comparison.
+
+    Attributes:
+        robot: Name of the robot.
+        case: Name of the case.
+        method: Name of the method.
+        target: Number of the task.
+        seed: Number of the repetition: other random numbers, and another start where the case leaves it free.
+        allowed: Kernel evaluations that were allowed.
+        solved: Whether it is a success by the case's judgement, within what was allowed.
+        met: Whether every target is within the tolerances and inside the limits, by Pinocchio.
+        claimed: Whether the method says that it is.
+        status: How it ended, in the method's words.
+        error: What was raised, or None.
+        position_error: Of the worst target of the task, by Pinocchio, m.
+        orientation_error: rad.
+        displacement: How far the joints went from the start to the last answer, |x - x0|, rad or m.
+        evaluations: Kernel evaluations spent; None when the method does not tell.
+        x: (n,) the last answer.
+        curve: Best cost so far at the shares ``CURVE`` of the budget, of methods that keep it.
+        seconds: Processor time, s. The one thing that differs from run to run.
+    """
+
+    robot: str
+    case: str
+    method: str
+    target: int
+    seed: int
+    allowed: int
+    solved: bool = False
+    met: bool = False
+    claimed: bool = False
+    status: str = "ERROR"
+    error: str | None = None
+    position_error: float | None = None
+    orientation_error: float | None = None
+    displacement: float | None = None
+    evaluations: int | None = None
+    x: tuple[float | None, ...] | None = None
+    curve: tuple[float | None, ...] | None = None
+    seconds: float | None = None
+
+    @property
+    def key(self) -> tuple[str, str, str, int, int]:
+        """What names it."""
+        return self.robot, self.case, self.method, self.target, self.seed
+
+    @property
+    def name(self) -> str:
+        """What names it, as one word that ``pin-metaik replay`` takes."""
+        return f"{self.robot}/{self.case}/{self.target}/{self.method}/{self.seed}"
+
+    @property
+    def reproducible(self) -> dict[str, Any]:
+        """The row without times: equal whenever, wherever and in whatever order it is run."""
+        return {name: value for name, value in self.row().items() if name not in TIMES}
+
+    def row(self) -> dict[str, Any]:
+        """As plain values, for JSON."""
+        return asdict(self)
+
+    @staticmethod
+    def of(row: Mapping[str, Any]) -> Trial:
+        """What ``row`` made, read back from JSON."""
+        vectors = {name: None if row[name] is None else tuple(row[name]) for name in ("x", "curve")}
+        return Trial(**{**row, **vectors})
+
+
+def sequence(rng: int, *path: str | int) -> np.random.SeedSequence:
+    """The node of ``SeedSequence(rng)``'s tree of spawned seeds that these names and numbers lead to."""
+    return np.random.SeedSequence(rng, spawn_key=tuple(_number(step) for step in path))
+
+
+def generator(rng: int, *path: str | int) -> np.random.Generator:
+    """A generator of its own for these names and numbers."""
+    return np.random.default_rng(sequence(rng, *path))
+
+
+def attempt(robot: str, case: Case, task: Task, method: Method, target: int, seed: int, budget: int, rng: int) -> Trial:
+    """Let a method try a task. What it raises becomes a row; ``KeyboardInterrupt`` comes through.
+
+    All methods start a repetition from the same coordinates.
+    """
+    path = (robot, case.name, target, seed)
+    row = Trial(robot, case.name, method.name, target, seed, budget * len(task.targets))
+    began = process_time()
+    try:
+        start = task.chain.box.sample(generator(rng, *path), 1)[0] if task.start is None else task.start
+        own = sequence(rng, *path, method.name).spawn(len(task.targets))
+        x, answers, problems = start, list[Answer](), task.problems
+        began = process_time()
+        for problem, child in zip(problems, own, strict=True):
+            answers.append(_answered(method, problem, x, budget, np.random.default_rng(child)))
+            x = np.asarray(answers[-1].x, dtype=float)
+        seconds = process_time() - began
+        verdicts = [problem.verdict(task.chain.q(a.x)) for problem, a in zip(problems, answers, strict=True)]
+        return _judged(row, case, task, Attempt(start, answers, verdicts), _curve(answers, budget), seconds)
+    except Exception as error:  # a method, or a case, of anybody: the others go on
+        return failed(row, error, process_time() - began)
+
+
+def _answered(method: Method, problem: IKProblem, x: Array, budget: int, rng: np.random.Generator) -> Answer:
+    """What a method says; while that collides, it gets random starts and what is left of the budget to find another."""
+    answer = method.solve(problem, x.copy(), budget, rng)
+    spent = answer.evaluations
+    while spent is not None and spent < budget and problem.verdict(problem.chain.q(answer.x)).collides:
+        start = problem.box.sample(rng, 1)[0]
+        answer = method.solve(problem, start, budget - spent, rng)
+        spent = None if answer.evaluations is None else spent + max(1, answer.evaluations)
+    return replace(answer, evaluations=spent)
+
+
+def failed(row: Trial, error: Exception, seconds: float = 0.0) -> Trial:
+    """The row of a trial that raised."""
+    return replace(row, error=f"{type(error).__name__}: {error}", seconds=seconds)
+
+
+def _judged(
+    row: Trial, case: Case, task: Task, done: Attempt, curve: tuple[float | None, ...] | None, seconds: float
+) -> Trial:
+    """The row of a trial that came to an end; who spends more than was allowed has not solved it."""
+    told = [answer.evaluations for answer in done.answers if answer.evaluations is not None]
+    spent = sum(told) if len(told) == len(done.answers) else None
+    last = done.X[-1]
+    return replace(
+        row,
+        solved=(spent is None or spent <= row.allowed) and bool(case.judge(task, done)),
+        met=done.reached,
+        claimed=all(answer.claimed for answer in done.answers),
+        status=done.answers[-1].status,
+        position_error=_finite(max(verdict.position_error for verdict in done.verdicts)),
+        orientation_error=_finite(max(verdict.orientation_error for verdict in done.verdicts)),
+        displacement=_finite(float(np.linalg.norm(travel(task.chain, done.x0, last)))),
+        evaluations=spent,
+        x=tuple(map(_finite, last.tolist())),
+        curve=curve,
+        seconds=seconds,
+    )
+
+
+def _number(step: str | int) -> int:
+    """A name as a number, the same on every machine."""
+    return step if isinstance(step, int) else int.from_bytes(hashlib.sha256(step.encode()).digest()[:8], "little")
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def _curve(answers: Sequence[Answer], budget: int) -> tuple[float | None, ...] | None:
+    """The trace of a single answer at fixed shares of the budget; None before its first entry."""
+    trace: NDArray[np.float64] | None = answers[0].trace if len(answers) == 1 else None
+    if trace is None or not len(trace):
+        return None
+    best = np.minimum.accumulate(trace[:, 1])
+    at = np.searchsorted(trace[:, 0], CURVE * budget, side="right") - 1
+    return tuple(_finite(float(best[i])) if i >= 0 else None for i in at)

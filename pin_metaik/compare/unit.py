@@ -1,0 +1,80 @@
+"""What is handed to a worker: one task of a comparison, and who shall try it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+from pin_metaik.collision import CollisionWorld
+from pin_metaik.compare.case import Case, Task
+from pin_metaik.compare.method import Method
+from pin_metaik.compare.trial import Trial, attempt, failed, generator
+from pin_metaik.kinematics import Chain
+from pin_metaik.robots import Robot, load_robot
+
+
+@dataclass(frozen=True)
+class Unit:
+    """One task, and who shall try it.
+
+    Attributes:
+        robot: Name of the robot.
+        spec: What ``load_robot`` takes.
+        case: The case.
+        target: Number of the task.
+        left: Methods and numbers of the repetitions.
+        budget: Kernel evaluations for each target.
+        rng: Seed of everything random.
+    """
+
+    robot: str
+    spec: str
+    case: Case
+    target: int
+    left: tuple[tuple[Method, int], ...]
+    budget: int
+    rng: int
+
+    def task(self) -> Task:
+        """The task, the same whoever tries it."""
+        chain = _arm(self.spec, self.robot, self.case, self.rng)
+        world = _world(self.spec, self.case)
+        return self.case.task(chain, world, generator(self.rng, self.robot, self.case.name, self.target))
+
+    def work(self) -> list[Trial]:
+        """Run the trials; a case that cannot draw its task is an error in each of their rows."""
+        try:
+            task = self.task()
+        except Exception as error:
+            return [
+                failed(Trial(self.robot, self.case.name, method.name, self.target, seed, self.budget), error)
+                for method, seed in self.left
+            ]
+        trials = []
+        for method, seed in self.left:
+            given = (self.robot, self.case, task, method, self.target, seed, self.budget, self.rng)
+            if (id(task.chain), method.name) not in _warm:  # tables and compiled code are made before anything is timed
+                _warm.add((id(task.chain), method.name))
+                attempt(*given)
+            trials.append(attempt(*given))
+        return trials
+
+
+_warm: set[tuple[int, str]] = set()
+
+
+@lru_cache(maxsize=32)
+def _arm(spec: str, robot: str, case: Case, rng: int) -> Chain:
+    """The chain of a case, made once in a process."""
+    return case.chain(_robot(spec), generator(rng, robot, case.name))
+
+
+@lru_cache(maxsize=32)
+def _world(spec: str, case: Case) -> CollisionWorld | None:
+    """The world of a case, made once in a process."""
+    return None if case.world is None else case.world(_robot(spec))
+
+
+@lru_cache(maxsize=32)
+def _robot(spec: str) -> Robot:
+    return load_robot(spec)

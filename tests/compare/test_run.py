@@ -1,0 +1,247 @@
+"""Running comparisons: rows depend on names and numbers alone, and nothing that was done is lost."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+from pyarrow import parquet
+
+from pin_metaik.compare import METHODS as KNOWN
+from pin_metaik.compare import Suite, compare, replay
+from pin_metaik.compare.environment import read_environment
+from pin_metaik.compare.record import Record
+from pin_metaik.compare.store import ROWS, read_record, read_rows
+from pin_metaik.compare.trial import generator
+from pin_metaik.errors import InvalidSetting, MetaIKError, MissingExtra, UnknownName
+from tests.compare.suites import IMPOSSIBLE, JUMPING, METHODS, SMALL, Interrupted, rows
+
+ROOT = Path(__file__).parents[2]
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
+COMMAND = [
+    sys.executable, "-m", "pin_metaik", "compare", "--robot", "ur5", "--cases", "singular", "path",
+    "--methods", ",".join(METHODS), "--targets", "3", "--seeds", "2", "--budget", "300",
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The small comparison, run at a stretch in this process."""
+    folder = tmp_path_factory.mktemp("whole")
+    outcome = compare(SMALL, folder)
+    assert (outcome.done, outcome.fresh, outcome.errors, outcome.partial) == (48, 48, 0, False)
+    return folder
+
+
+def test_rows_do_not_depend_on_the_number_of_processes(whole: Path, tmp_path: Path) -> None:
+    compare(SMALL, tmp_path, jobs=2)
+    assert rows(tmp_path) == rows(whole)
+
+
+def test_rows_do_not_depend_on_what_else_is_compared(whole: Path, tmp_path: Path) -> None:
+    compare(Suite(("ur5",), ("path",), ("default", "gwo"), targets=2, seeds=1, budget=300), tmp_path)
+    there = rows(whole)
+    assert rows(tmp_path).items() <= there.items()
+
+
+def test_another_seed_gives_other_tasks() -> None:
+    same, other = (generator(0, "ur5", "path", 1, 0, method).random() for method in ("gwo", "gwo"))
+    assert same == other
+    paths = [
+        ("ur5", "path", 1, 0, "gwo"),
+        ("ur5", "path", 0, 1, "gwo"),
+        ("ur5", "path", 1, 0, "gwo+dls"),
+        ("ur5", "path", 1),
+    ]
+    drawn = [generator(0, *path).random() for path in paths] + [generator(1, *paths[0]).random()]
+    assert len(set(drawn)) == len(drawn)
+
+
+def test_what_was_cut_off_is_done_again_and_nothing_else(whole: Path, tmp_path: Path) -> None:
+    compare(SMALL, tmp_path)
+    text = (tmp_path / ROWS).read_bytes()
+    lines = text.splitlines(keepends=True)
+    (tmp_path / ROWS).write_bytes(b"".join(lines[:20]) + lines[20][:57])
+    assert len(read_rows(tmp_path)) == 20
+    outcome = compare(SMALL, tmp_path)
+    assert (outcome.done, outcome.fresh) == (48, 28)
+    assert rows(tmp_path) == rows(whole)
+    assert (tmp_path / ROWS).read_bytes().startswith(b"".join(lines[:20]))
+    assert len(read_environment(tmp_path)) == 2
+
+
+def test_a_comparison_may_grow_but_not_change(whole: Path, tmp_path: Path) -> None:
+    compare(Suite(("ur5",), ("path",), ("gwo",), targets=1, seeds=1, budget=300), tmp_path)
+    outcome = compare(SMALL, tmp_path)
+    assert outcome.fresh == 47
+    assert rows(tmp_path) == rows(whole)
+    for changed, complaint in (
+        (Suite(("ur5",), ("singular", "path"), METHODS, 3, 2, 400), "--budget 300, not 400"),
+        (Suite(("ur5",), ("singular", "path"), METHODS, 3, 2, 300, 1), "--rng 0, not 1"),
+        (Suite(("ur5",), ("singular",), METHODS, 3, 2, 300), "cases path"),
+        (Suite(("ur5",), ("singular", "path"), METHODS, 2, 2, 300), "3 targets"),
+    ):
+        with pytest.raises(InvalidSetting, match=complaint):
+            compare(changed, tmp_path)
+
+
+def test_a_line_that_is_no_row_is_named(tmp_path: Path) -> None:
+    (tmp_path / ROWS).write_text('{"robot": "ur5"}\n')
+    with pytest.raises(InvalidSetting, match="line 1"):
+        read_rows(tmp_path)
+
+
+def test_what_a_method_raises_is_a_row_and_not_the_end(tmp_path: Path) -> None:
+    outcome = compare(Suite(("ur5",), ("random",), (JUMPING, "dls"), targets=8, budget=100), tmp_path)
+    assert outcome.done == 16
+    raised = [trial for trial in read_rows(tmp_path) if trial.error is not None]
+    assert 0 < len(raised) == outcome.errors < 8
+    assert {trial.error for trial in raised} == {"ZeroDivisionError: one over nothing"}
+    assert not any(trial.solved for trial in raised)
+    claimed = [trial for trial in read_rows(tmp_path) if trial.method == "jumping" and trial.error is None]
+    assert all(trial.claimed and not trial.met and not trial.solved for trial in claimed)
+
+
+def test_a_case_that_raises_is_a_row_for_each_method(tmp_path: Path) -> None:
+    assert compare(Suite(("ur5",), (IMPOSSIBLE,), ("dls", "lm"), targets=2), tmp_path).errors == 4
+
+
+def test_who_spends_more_than_allowed_has_not_solved_it(tmp_path: Path) -> None:
+    compare(Suite(("ur5",), ("random",), ("tests.compare.suites:SPENDTHRIFT",), targets=3), tmp_path)
+    assert all(trial.met and not trial.solved for trial in read_rows(tmp_path))
+
+
+def test_methods_that_know_nothing_of_collisions_try_again_within_their_budget(tmp_path: Path) -> None:
+    methods = ("dls+restarts", "mtde@60+dls", "default")
+    compare(Suite(("ur5",), ("cluttered",), methods, targets=5, budget=2000), tmp_path)
+    trials = read_rows(tmp_path)
+    assert all(trial.solved and trial.evaluations is not None and trial.evaluations <= 2000 for trial in trials)
+
+
+def test_ctrl_c_keeps_what_is_done(tmp_path: Path) -> None:
+    outcome = compare(Suite(("ur5",), ("random",), (Interrupted(),), targets=6), tmp_path)
+    assert outcome.partial and outcome.done == len(read_rows(tmp_path)) == 2
+    assert "interrupted: the same command goes on" in str(outcome)
+
+
+def test_the_parquet_file_has_the_same_rows(whole: Path) -> None:
+    table = parquet.read_table(whole / "rows.parquet").to_pylist()
+    trials = sorted(read_rows(whole), key=lambda trial: trial.key)
+    assert json.loads(json.dumps([trial.row() for trial in trials])) == table
+
+
+def test_a_suite_and_its_environment_are_written_down(whole: Path) -> None:
+    record = read_record(whole)
+    assert record == Record.of(SMALL) and record.suite() == SMALL
+    (session,) = read_environment(whole)
+    assert {"pin-metaik", "pin", "numpy", "numba", "scipy", "joblib"} <= session["packages"].keys()
+    assert session["processor"] and session["cores"] >= 1 and session["date"].startswith("20")
+    assert session["kernel_evaluations"]["measured by"] == "python benchmarks/kernel_costs.py"
+
+
+def test_a_trial_can_be_run_again_by_its_name(whole: Path) -> None:
+    trial = next(trial for trial in read_rows(whole) if trial.method == "mtde@60+dls" and trial.case == "singular")
+    again = replay(whole, trial.name)
+    assert again.same and again.trial.reproducible == trial.reproducible
+    assert "as its row says" in "\n".join(again.lines())
+    with pytest.raises(UnknownName, match="no method named 'gwo2'"):
+        replay(whole, "ur5/singular/0/gwo2/0")
+    with pytest.raises(InvalidSetting, match="ROBOT/CASE/TARGET/METHOD/SEED"):
+        replay(whole, "ur5/singular")
+
+
+@pytest.mark.parametrize(
+    ("call", "error"),
+    [
+        (lambda: Suite(("ur55",), ("path",), ("gwo",)), UnknownName),
+        (lambda: Suite(("ur5",), ("paht",), ("gwo",)), UnknownName),
+        (lambda: Suite(("ur5",), ("path",), ("gow",)), UnknownName),
+        (lambda: Suite(("ur5",), ("path",), ("nowhere:gwo",)), InvalidSetting),
+        (lambda: Suite(("ur5",), ("path",), ("tests.compare.suites:NONE",)), UnknownName),
+        (lambda: Suite(("ur5",), ("tests.compare.suites:JUMPING",), ("gwo",)), InvalidSetting),
+        (lambda: Suite(("ur5",), ("path",), ("tests.compare.suites:MINE",)), InvalidSetting),
+        (lambda: Suite(("ur5",), ("path",), ("gwo", "gwo")), InvalidSetting),
+        (lambda: Suite((), ("path",), ("gwo",)), InvalidSetting),
+        (lambda: Suite(("ur5",), ("path",), ("gwo",), targets=0), InvalidSetting),
+    ],
+)
+def test_what_makes_no_sense_is_said_before_anything_runs(call: object, error: type[MetaIKError]) -> None:
+    with pytest.raises(error):
+        call()  # type: ignore[operator]
+
+
+def test_peers_that_are_missing_are_told_before_anything_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pin_metaik.compare.methods.peers.peer.find_spec", lambda name: None)
+    with pytest.raises(MissingExtra, match="peers"):
+        Suite(("ur5",), ("path",), ("ikpy",))
+    assert "ikpy" in KNOWN
+
+
+@pytest.mark.slow
+def test_killed_half_way_and_started_again_the_rows_are_those_of_one_stretch(whole: Path, tmp_path: Path) -> None:
+    out, file = ["--jobs", "2", "--out", str(tmp_path)], tmp_path / ROWS
+    running = subprocess.Popen([*COMMAND, *out], env=ENVIRONMENT, start_new_session=True, stderr=subprocess.DEVNULL)
+    try:
+        until = time.monotonic() + 120.0
+        while not (file.exists() and file.stat().st_size) and time.monotonic() < until:
+            time.sleep(0.001)
+    finally:
+        os.killpg(running.pid, signal.SIGKILL)
+        running.wait()
+    there = rows(tmp_path)
+    assert 0 < len(there) < 48
+    done = subprocess.run([*COMMAND, *out], env=ENVIRONMENT, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert f"48 of 48 rows, {48 - len(there)} of them now" in done.stdout
+    assert rows(tmp_path) == rows(whole)
+
+
+@pytest.fixture(scope="module")
+def scheduler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The address of a Dask cluster on this machine: a scheduler and two workers, each a process."""
+    pytest.importorskip("distributed")
+    folder = tmp_path_factory.mktemp("dask")
+    where, quiet = folder / "scheduler.json", {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    dask = [sys.executable, "-m", "dask"]
+    here = ["--host", "127.0.0.1", "--no-dashboard"]
+    with ExitStack() as stack:
+
+        def start(*words: str) -> None:
+            process = subprocess.Popen([*dask, *words], env=ENVIRONMENT, cwd=folder, **quiet)
+            stack.callback(process.wait)
+            stack.callback(process.terminate)
+
+        start("scheduler", "--port", "0", "--scheduler-file", str(where), *here)
+        for _ in range(2):
+            start("worker", "--scheduler-file", str(where), "--nworkers", "1", "--nthreads", "1", *here)
+        until = time.monotonic() + 60.0
+        while not where.exists() and time.monotonic() < until:
+            time.sleep(0.05)
+        address = str(json.loads(where.read_text())["address"])
+        from distributed import Client
+
+        with Client(address, timeout=60) as client:  # type: ignore[no-untyped-call]
+            client.wait_for_workers(2, timeout=60)
+        yield address
+
+
+@pytest.mark.slow
+def test_a_dask_cluster_gives_the_same_rows(whole: Path, tmp_path: Path, scheduler: str) -> None:
+    words = [*COMMAND, "--backend", "dask", "--scheduler", scheduler, "--out", str(tmp_path)]
+    done = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert rows(tmp_path) == rows(whole)
+
+
+def test_a_cluster_that_does_not_answer_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("distributed")
+    monkeypatch.setattr("pin_metaik.compare.run.CONNECTING", 0.5)
+    for scheduler, complaint in ((None, "--scheduler ADDRESS"), ("tcp://127.0.0.1:9", "no Dask scheduler answers")):
+        with pytest.raises(InvalidSetting, match=complaint):
+            compare(SMALL, tmp_path / "out", backend="dask", scheduler=scheduler)
