@@ -14,8 +14,8 @@ from pin_metaik.ik.ledger import Ledger
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solver import FALLBACK, IKSolver
-from pin_metaik.ik.starts import Rng
 from pin_metaik.optimize import make
+from pin_metaik.randomness import Rng
 
 LEVER = 2.0  # m; how far from its frame what a frame holds may reach, generously
 HELD = 0.01  # m; looser targets do not hold their frame

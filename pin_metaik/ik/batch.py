@@ -21,9 +21,10 @@ from pin_metaik.ik.problem import check_world
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solve import solve_one
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
-from pin_metaik.ik.starts import LANE, Rng, drawn
+from pin_metaik.ik.starts import LANE, drawn
 from pin_metaik.ik.target import DEFAULT_TOLERANCE, Target, TargetLike
 from pin_metaik.kinematics import Chain
+from pin_metaik.randomness import Rng
 
 CHUNKS, LEAST, MOST = 4, 16, 256  # parts for each worker, and how many targets are in one
 

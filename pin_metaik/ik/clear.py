@@ -13,8 +13,9 @@ from pin_metaik.ik.ledger import Ledger
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.push import Push
 from pin_metaik.ik.solutions import VAIN, VAIN_EACH, gather
-from pin_metaik.ik.starts import BATCH, DEFAULT_SEED, Rng, drawn
+from pin_metaik.ik.starts import BATCH, DEFAULT_SEED, drawn
 from pin_metaik.optimize import Metaheuristic, minimize
+from pin_metaik.randomness import Rng, as_generator
 
 NEAREST = 24  # entries of the atlas to start from
 CANDIDATES = 256  # solutions kept, to be told apart
@@ -47,7 +48,7 @@ class ClearSearch:
         self._depths = np.full(CANDIDATES, np.nan)  # of the solutions found, NaN where not known yet
         self._pushed: set[int] = set()
         self._redundant = problem.chain.n > len(problem.rows)
-        self._generator = np.random.default_rng(DEFAULT_SEED if rng is None else rng)
+        self._generator = as_generator(DEFAULT_SEED if rng is None else rng)
 
     def run(self, x: NDArray[np.float64], seeder: Metaheuristic) -> NDArray[np.float64] | None:
         """Coordinates (n,) that are a solution, from x (n,), which is one but for collisions; None: none was found."""

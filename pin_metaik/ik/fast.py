@@ -17,9 +17,10 @@ from pin_metaik.ik.refine.dls import DLS, PROGRESS
 from pin_metaik.ik.refine.protocol import Refinement
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solver import IKSolver
-from pin_metaik.ik.starts import LANE, Rng, drawn
+from pin_metaik.ik.starts import LANE, drawn
 from pin_metaik.ik.target import DEFAULT_TOLERANCE, Target
 from pin_metaik.kinematics import Chain
+from pin_metaik.randomness import Rng
 
 LAST_ROW = [0.0, 0.0, 0.0, 1.0]
 
@@ -68,7 +69,7 @@ def solve_fast(
     tolerances = DEFAULT_TOLERANCE, DEFAULT_TOLERANCE
     if isinstance(target, pin.SE3):
         goal = pin.SE3(target)
-    elif isinstance(target, np.ndarray) and target.shape == (4, 4):
+    elif isinstance(target, np.ndarray) and target.shape == (4, 4) and target.dtype.kind == "f":
         goal = pin.SE3(target)
         if target[3].tolist() != LAST_ROW:
             return None
@@ -76,7 +77,10 @@ def solve_fast(
         goal, tolerances = target.pose, target.allowance
     else:
         return None
-    start = chain.reference if q0 is None else np.ascontiguousarray(q0, dtype=float)
+    try:
+        start = chain.reference if q0 is None else np.ascontiguousarray(q0, dtype=float)
+    except (TypeError, ValueError):
+        return None
     if start.shape != chain.reference.shape:
         return None
     q = np.empty((1, len(start)))

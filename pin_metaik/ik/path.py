@@ -17,9 +17,10 @@ from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidSetting, InvalidTarget
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.solutions import gather
-from pin_metaik.ik.starts import Rng, drawn
+from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
+from pin_metaik.randomness import Rng
 
 WIDEST = 48  # solutions in a layer
 FRESH = 24  # starts from the atlas and as many random ones for a layer of its own

@@ -14,10 +14,11 @@ from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.dls import DLS, PROGRESS
-from pin_metaik.ik.starts import Rng, drawn
+from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Budget
+from pin_metaik.randomness import Rng
 
 BATCH = 128  # starts between two looks at what came of them
 VAIN = 60  # starts in a row that led to nothing new ...

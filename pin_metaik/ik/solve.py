@@ -12,9 +12,9 @@ from pin_metaik.ik.fast import solve_fast
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.result import IKResult
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
-from pin_metaik.ik.starts import Rng
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
+from pin_metaik.randomness import Rng
 
 
 def solve_ik(

@@ -18,8 +18,9 @@ from pin_metaik.ik.refine import DLS, Refinement, Refiner, make_refiner
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.select import SELECT
 from pin_metaik.ik.solutions import collect
-from pin_metaik.ik.starts import DEFAULT_SEED, Rng, start_batches
+from pin_metaik.ik.starts import DEFAULT_SEED, start_batches
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
+from pin_metaik.randomness import Rng, as_generator
 
 ELITE = 8  # points of a seeder's search that are refined
 SEEDER_SHARE = 0.25  # of the budget, for one round of the seeder before its elite is refined
@@ -178,7 +179,7 @@ class IKSolver:
         ledger: Ledger,
     ) -> None:
         """Search with the metaheuristic; with a refiner in rounds, each refining the elite of its search."""
-        generator = np.random.default_rng(DEFAULT_SEED if rng is None else rng)
+        generator = as_generator(DEFAULT_SEED if rng is None else rng)
         share = 1.0 if self._refiner is None else SEEDER_SHARE
         while True:
             budget = ledger.slice(share)

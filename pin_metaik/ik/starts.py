@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.kinematics import Chain
-
-Rng: TypeAlias = int | np.random.Generator | None
+from pin_metaik.randomness import Rng
 
 DEFAULT_SEED = 0
 LANE = 256  # starts of the fast lane

@@ -21,6 +21,7 @@ from pin_metaik.kinematics.limits import Limits, finite_or_infinite
 from pin_metaik.kinematics.paths import lay_paths, motion_of
 from pin_metaik.kinematics.reach import Reach, reach_of
 from pin_metaik.optimize import Box
+from pin_metaik.randomness import as_generator
 
 Lane: TypeAlias = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float32]]
 
@@ -196,7 +197,7 @@ class Chain:
         if (count, seed) not in self._samples:
             if len(self._samples) == REMEMBERED:
                 self._samples.clear()
-            self._samples[count, seed] = self.box.sample(np.random.default_rng(seed), count)
+            self._samples[count, seed] = self.box.sample(as_generator(seed), count)
         return self._samples[count, seed]
 
     def reach(self, tip: int, oriented: bool) -> Reach:

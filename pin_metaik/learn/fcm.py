@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.learn.arrays import Array, as_table
+from pin_metaik.randomness import as_generator
 
 CHUNK = 2**16  # memberships held at a time: half a megabyte, which stays in the cache
 COINCIDENT = 1e-300  # squared distance of a point from a centre it lies on
@@ -69,7 +70,7 @@ def fuzzy_c_means(
         raise InvalidSetting(f"m must be a finite number above 1, not {m!r}")
     if iterations < 1 or not tolerance >= 0:
         raise InvalidSetting(f"iterations must be at least 1 and tolerance at least 0, not {iterations}, {tolerance}")
-    generator = np.random.default_rng(rng)
+    generator = as_generator(rng)
     centres = Z[generator.choice(len(Z), clusters, replace=False)] if start is None else as_table("the start", start)
     if centres.shape != (clusters, Z.shape[1]):
         raise InvalidSetting(f"the start has shape {centres.shape}: expected ({clusters}, {Z.shape[1]})")

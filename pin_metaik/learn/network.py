@@ -10,6 +10,7 @@ import numpy as np
 
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.learn.arrays import Array
+from pin_metaik.randomness import as_generator
 
 ROWS = 4096  # at a time: as many stay in the cache, and BLAS does not spread them over threads that wait for each other
 
@@ -50,7 +51,7 @@ class Network:
 
         The neurons of a hidden layer divide the range of its inputs among them; the output starts near zero.
         """
-        generator = np.random.default_rng(rng)
+        generator = as_generator(rng)
         parts: list[Array] = []
         for into, out in zip(self.sizes[:-2], self.sizes[1:-1], strict=True):
             beta = 0.7 * out ** (1 / into)

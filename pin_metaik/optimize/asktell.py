@@ -15,6 +15,7 @@ from pin_metaik.optimize.registry import make
 from pin_metaik.optimize.search import Metaheuristic, Search
 from pin_metaik.optimize.settings import whole
 from pin_metaik.optimize.space import Array, Box
+from pin_metaik.randomness import as_generator
 
 
 class Status(Enum):
@@ -70,7 +71,7 @@ class AskTell:
         algorithm = make(algorithm)
         self._name = type(algorithm).__name__
         self._budget = budget or Budget()
-        self.run = Search(box, np.random.default_rng(rng), _starts(seeds, box), self._budget)
+        self.run = Search(box, as_generator(rng), _starts(seeds, box), self._budget)
         self.elite = Elite(keep, box.dimension)
         self.status: Status | None = None
         self.generations = 0

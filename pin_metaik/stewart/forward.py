@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.errors import InvalidConfiguration, InvalidGeometry, InvalidSetting
 from pin_metaik.optimize.space import Array
+from pin_metaik.randomness import as_generator
 from pin_metaik.stewart.geometry import MOST_LEGS, Geometry
 from pin_metaik.stewart.loading import load_newton
 from pin_metaik.stewart.poses import PoseLike, as_poses
@@ -111,7 +112,7 @@ def all_forward(geometry: Geometry, lengths: ArrayLike, rng: int | np.random.Gen
     d = _lengths(geometry, lengths)
     if len(d) != 1:
         raise InvalidConfiguration(f"all assemblies are found for one set of leg lengths, got {len(d)}")
-    generator = np.random.default_rng(rng)
+    generator = as_generator(rng)
     found = np.empty((0, 4, 4))
     barren = 0
     while barren < PATIENCE:

@@ -229,3 +229,22 @@ def test_a_result_can_verify_itself() -> None:
     result = mik.solve_ik(chain, [0.3, 0.3, 0.4])
     assert result.verify()
     assert "SOLVED" in str(result)
+
+
+def test_a_pose_may_come_as_any_array_of_numbers() -> None:
+    chain = chain_of("ur5")
+    pose = chain.poses(chain.box.sample(np.random.default_rng(0), 1))[0, 0]
+    frozen = pose.copy()
+    frozen.flags.writeable = False
+    for same in (
+        pose.tolist(),
+        np.asfortranarray(pose),
+        frozen,
+        pose.astype(object),
+        np.stack([pose, pose], -1)[..., 0],
+    ):
+        # Arrays take the fast lane, others the long way round, which rounds a pose once more.
+        assert_allclose(mik.solve_ik(chain, same).q, mik.solve_ik(chain, pose).q, atol=1e-12)
+    assert mik.solve_ik(chain, pose.astype(np.float32)).success
+    with pytest.raises(InvalidConfiguration, match="6 numbers, got 'home'"):
+        mik.solve_ik(chain, pose, "home")

@@ -14,6 +14,7 @@ import numpy as np
 from pin_metaik.learn import Clusters, fuzzy_c_means
 from pin_metaik.learn.arrays import Array
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
+from pin_metaik.randomness import as_generator
 
 LARGEST = np.radians(150)
 FINE_SPEEDS, FINE_ANGLES = 79, 301
@@ -68,7 +69,7 @@ def random_points(
 ) -> Array:
     """A control (count, 2): as many points of the test set drawn at random."""
     grid = fine_grid(vehicle)
-    return np.asarray(grid[np.random.default_rng(rng).choice(len(grid), count, replace=False)])
+    return np.asarray(grid[as_generator(rng).choice(len(grid), count, replace=False)])
 
 
 def chebyshev_points(vehicle: SynchroDrive) -> Array:

@@ -9,6 +9,7 @@ import shapely
 
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.world.scene import Point, Scene
+from pin_metaik.randomness import as_generator
 
 ATTEMPTS = 2000  # places tried for one obstacle
 
@@ -44,7 +45,7 @@ def random_scene(
             f"{obstacles}, {size}, {fill}, {gap}"
         )
     name = f"random:{rng}" if isinstance(rng, int) else "random"
-    generator = np.random.default_rng(rng)
+    generator = as_generator(rng)
     start = start or (0.05 * size, 0.05 * size)
     goal = goal or (0.95 * size, 0.95 * size)
     usual = size * math.sqrt(fill / (math.pi * max(obstacles, 1)))  # radius
