@@ -110,7 +110,8 @@ def design(
         "from_current": from_current,
     }
     if mechanism.task is not None:
-        task = replace(mechanism.task, **{key: value for key, value in given.items() if value is not None})  # type: ignore[arg-type]
+        changed = {key: value for key, value in given.items() if value is not None}
+        task = replace(mechanism.task, **changed)  # type: ignore[arg-type]  # each value is of its own field's type
         mechanism = replace(mechanism, task=task)
     with stewart.progress_bar("designing") as watch:
         found = stewart.design(mechanism, watch=watch)
@@ -163,7 +164,7 @@ def _measured(mechanism: Mechanism, norm: str | None, length: str | None) -> Mec
     """With another norm or characteristic length."""
     dexterity = mechanism.dexterity
     if norm is not None:
-        dexterity = replace(dexterity, norm=norm)  # type: ignore[arg-type]
+        dexterity = replace(dexterity, norm=norm)  # type: ignore[arg-type]  # the settings say whether it is one
     if length is not None:
         dexterity = replace(dexterity, length=_length(mechanism, length))
     return replace(mechanism, dexterity=dexterity)

@@ -170,7 +170,7 @@ def length(kind: str, name: str, value: ArrayLike) -> float:
         InvalidGeometry: It is not.
     """
     try:
-        number = float(value)  # type: ignore[arg-type]
+        number = float(value)  # type: ignore[arg-type]  # whatever was given: what float refuses is told
     except (TypeError, ValueError):
         number = math.nan
     if not 0.0 < number < math.inf:

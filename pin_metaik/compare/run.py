@@ -127,7 +127,7 @@ def _cluster(scheduler: str | None) -> Any:
     if scheduler is None:
         raise InvalidSetting("name the Dask cluster: --scheduler ADDRESS, e.g. tcp://localhost:8786")
     try:
-        return Client(scheduler, timeout=CONNECTING)  # type: ignore[no-untyped-call]
+        return Client(scheduler, timeout=CONNECTING)  # type: ignore[no-untyped-call]  # it carries no types
     except (OSError, ValueError) as error:
         raise InvalidSetting(f"no Dask scheduler answers at {scheduler}: {error}") from None
 

@@ -47,7 +47,7 @@ def keep_clear(first: IKResult, q0: ArrayLike | None, solver: IKSolver, world: C
         q, status = chain.q(chain.limits.nearest_turns(free, chain.x(base)), base), IKStatus.SOLVED
     else:
         q = chain.q(search.least_deep(), base) if search.known else first.q
-        status = IKStatus.STOPPED if ledger.interrupted or ledger.late else IKStatus.IN_COLLISION
+        status = IKStatus.STOPPED if ledger.interrupted or ledger.late() else IKStatus.IN_COLLISION
     verdict = problem.verdict(q)
     return replace(
         first,

@@ -53,7 +53,7 @@ class Ledger:
 
     def over(self, share: float = 1.0) -> bool:
         """Whether the search is over: solved, interrupted, or this share of the budget spent."""
-        return self.met or self.interrupted or self.left(share) == 0 or self._late(share)
+        return self.met or self.interrupted or self.left(share) == 0 or self.late(share)
 
     def slice(self, share: float) -> Budget:
         """A budget for one round of seeding: this share of what is left."""
@@ -87,10 +87,6 @@ class Ledger:
     def _elapsed(self) -> float:
         return perf_counter() - self._began
 
-    @property
-    def late(self) -> bool:
-        """Whether time is up."""
-        return self._late()
-
-    def _late(self, share: float = 1.0) -> bool:
+    def late(self, share: float = 1.0) -> bool:
+        """Whether this share of the time is up."""
         return self._budget.seconds is not None and self._elapsed() >= share * self._budget.seconds

@@ -11,10 +11,10 @@ from pin_metaik.compiled import Floats, Ints, Singles, allocating, inline, jit
 from pin_metaik.kinematics.atlas import LEAF
 from pin_metaik.kinematics.descent import Arm, Bounds, workspace
 from pin_metaik.kinematics.guesses import Atlas, lookup_space
+from pin_metaik.kinematics.pose import ORTHONORMAL
 from pin_metaik.kinematics.reach import ROUNDING
 from pin_metaik.kinematics.searches import search
 
-ORTHONORMAL = 1e-6  # how far R'R may be from the identity
 POSITION = np.array([[0, 0], [0, 1], [0, 2]])  # the rows that count where orientation is free
 SOLVED, UNSOLVED, NO_POSE, NO_START = 0, 1, 2, 3
 

@@ -62,7 +62,7 @@ class Grid:
     def at(cls, xyz: tuple[float, float, float], **orientations: object) -> Grid:
         """A grid of orientations at one position (m): ``Grid.at((0, 0, 0.4), steps=(9, 9, 1), roll=(-0.3, 0.3))``."""
         x, y, z = xyz
-        return cls((1, 1, 1), (x, x), (y, y), (z, z), **orientations)  # type: ignore[arg-type]
+        return cls((1, 1, 1), (x, x), (y, y), (z, z), **orientations)  # type: ignore[arg-type]  # checked as fields
 
 
 def as_range(name: str, ends: object) -> Range:
@@ -72,7 +72,7 @@ def as_range(name: str, ends: object) -> Range:
         InvalidBounds: Not two finite numbers, or crossed.
     """
     try:
-        low, high = (float(end) for end in ends)  # type: ignore[attr-defined]
+        low, high = (float(end) for end in ends)  # type: ignore[attr-defined]  # what has no two ends is told
     except (TypeError, ValueError):
         raise InvalidBounds(f"the range of {name} is two numbers, got {ends!r}") from None
     if not (np.isfinite(low) and np.isfinite(high)) or low > high:

@@ -174,7 +174,7 @@ def _geometry(content: dict[str, Any], legs: Table, path: str, length: Unit, ang
         base.numbers("angles", angle),
         platform.numbers("angles", angle),
         pairs,
-        reference,  # type: ignore[arg-type]
+        reference,  # type: ignore[arg-type]  # three numbers, as asked for above
     )
 
 

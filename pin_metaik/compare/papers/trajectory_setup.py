@@ -214,8 +214,7 @@ class Lab:
             "spline": lambda v, theta: v * spline(np.sqrt(theta)),
         }
         for net in NETS:
-            predict = self.models[f"{net} grid paper"].regressor.predict
-            ways[f"ANN {net}"] = lambda v, theta, predict=predict: predict(np.column_stack((v, theta)))  # type: ignore[misc]
+            ways[f"ANN {net}"] = _on_columns(self.models[f"{net} grid paper"].regressor.predict)
         rng = self.options.generator(102)
         trials = []
         for count in COUNTS:
@@ -244,7 +243,13 @@ class Lab:
             ):
                 with warnings.catch_warnings():
                     warnings.simplefilter("ignore", OutsideTraining)  # where it is, the closed form is used
-                    plan = plan_trajectory(path, NOMAD_200, obstacles, method=method, model=model)  # type: ignore[arg-type]
+                    plan = plan_trajectory(
+                        path,
+                        NOMAD_200,
+                        obstacles,
+                        method=method,  # type: ignore[arg-type]  # it checks the name itself
+                        model=model,
+                    )
                 if plan.interrupted:
                     raise KeyboardInterrupt
                 wrong = None if plan.learned is None else 1e3 * plan.learned.tangent_error
@@ -295,3 +300,8 @@ def _time(way: Callable[[Array, Array], Array], v: Array, theta: Array, repeats:
         way(v, theta)
         times.append(perf_counter() - began)
     return min(times)
+
+
+def _on_columns(predict: Callable[[Array], Array]) -> Callable[[Array, Array], Array]:
+    """A function of speeds (k,) and angles (k,) from one of a table (k, 2) of both."""
+    return lambda v, theta: predict(np.column_stack((v, theta)))

@@ -33,7 +33,8 @@ def lines(methods: Sequence[str]) -> dict[str, Line]:
     ``gwo+dls`` and ``gwo`` have one colour, ``gwo+dls`` and ``mtde+dls`` one style; ``lm`` and ``lm+restarts`` differ
     in style, ``lm+restarts`` and ``dls+restarts`` in colour.
     """
-    parts = {method: re.match(r"([^@+]*)(.*)", method).groups() for method in methods}  # type: ignore[union-attr]
+    firsts = {method: re.split("[@+]", method, maxsplit=1)[0] for method in methods}
+    parts = {method: (first, method.removeprefix(first)) for method, first in firsts.items()}
     colours = dict(zip(dict.fromkeys(first for first, _ in parts.values()), itertools.cycle(COLOURS), strict=False))
     rest = sorted(dict.fromkeys(rest for _, rest in parts.values()), key=lambda rest: (rest != "+restarts", rest == ""))
     styles = dict(zip(rest, itertools.cycle(STYLES), strict=False))
