@@ -16,13 +16,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting, InvalidTarget
-from pin_metaik.ik.fast import run_lane
 from pin_metaik.ik.problem import check_world
 from pin_metaik.ik.result import IKResult, IKStatus
-from pin_metaik.ik.solve import solve_one
+from pin_metaik.ik.solve import solve_ik
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
 from pin_metaik.ik.starts import LANE, drawn
-from pin_metaik.ik.target import DEFAULT_TOLERANCE, Target, TargetLike
+from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.randomness import Rng
 
@@ -122,25 +121,26 @@ def solve_ik_batch(
 
     def alone(i: int) -> None:
         try:
-            result = solve_one(chain, asked[i], bases[i], solver, seed, world)
+            result = solve_ik(chain, asked[i], bases[i], solver=solver, world=world, rng=seed)
         except InvalidTarget as error:
             raise InvalidTarget(f"target {i}: {error}") from None
         batch.q[i], batch.success[i], batch.status[i] = result.q, result.success, result.status
         batch.position_error[i], batch.orientation_error[i] = result.position_error, result.orientation_error
         batch.evaluations[i] = result.evaluations
 
-    fast = solver.fast if array is not None and len(chain.frames) == 1 else None
+    settings = solver.lane if array is not None and len(chain.frames) == 1 else None
     workers = workers or os.cpu_count() or 1
     with ThreadPoolExecutor(workers) as pool:
         left: Iterable[int] = range(k)
-        if array is not None and fast is not None:
-            poses, starts = _as_poses(array), drawn(chain, seed, 0, LANE)
-            tolerances = DEFAULT_TOLERANCE, DEFAULT_TOLERANCE if array.ndim == 3 else math.inf
-            chain.lane(array.ndim == 3)  # made once, before the threads ask for it
+        if array is not None and settings is not None:
+            poses, starts, oriented = _as_poses(array), drawn(chain, seed, 0, LANE), array.ndim == 3
+            if not oriented:
+                settings = np.array([*settings[:5], math.inf])
+            lane = chain.lane(oriented)
 
             def together(part: slice) -> NDArray[np.int64]:
-                ended = run_lane(chain, solver, fast, starts, tolerances, poses[part], bases[part], batch.q[part])
-                return _judge(batch, poses[part], tolerances, ended, part)
+                lane.solve_poses(starts, settings, poses[part], batch.q[part], batch.evaluations[part])
+                return _judge(batch, poses[part], settings[4:], part)
 
             left = np.concatenate([*pool.map(together, _slices(k, workers)), np.empty(0, np.int64)])
         list(pool.map(alone, map(int, left)))
@@ -154,11 +154,7 @@ def _slices(k: int, workers: int) -> list[slice]:
 
 
 def _judge(
-    batch: IKBatch,
-    poses: NDArray[np.float64],
-    tolerances: tuple[float, float],
-    ended: NDArray[np.int64],
-    part: slice,
+    batch: IKBatch, poses: NDArray[np.float64], tolerances: NDArray[np.float64], part: slice
 ) -> NDArray[np.int64]:
     """Let Pinocchio judge one part of the batch; returns the numbers of what is left to solve."""
     chain, q = batch.chain, batch.q[part]
@@ -166,9 +162,8 @@ def _judge(
     if tolerances[1] == math.inf:
         orientation[:] = 0.0
     batch.position_error[part], batch.orientation_error[part] = position, orientation
-    batch.evaluations[part] = ended[:, 0]
     met = (
-        (ended[:, 1] == chain.kernels.SOLVED)
+        (batch.evaluations[part] >= 0)
         & (position <= tolerances[0])
         & (orientation <= tolerances[1])
         & (chain.inside(q) == q).all(axis=1)

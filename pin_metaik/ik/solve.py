@@ -50,25 +50,11 @@ def solve_ik(
         InvalidBounds: If a joint of the chain has no finite range to search in.
         InvalidSetting: If the world is another model's than the chain.
     """
-    return solve_one(chain, target, q0, solver or DEFAULT_SOLVER, rng, world)
-
-
-def solve_one(
-    chain: Chain,
-    target: TargetLike | Sequence[TargetLike],
-    q0: ArrayLike | None,
-    solver: IKSolver,
-    rng: Rng,
-    world: CollisionWorld | None,
-) -> IKResult:
-    """By the fast lane where it leads to the end, otherwise the long way on from there; clear of collisions, if asked.
-
-    A choice among solutions is one among those that are clear.
-    """
+    solver = solver or DEFAULT_SOLVER
     fast = solve_fast(chain, target, q0, solver, rng)
     if isinstance(fast, IKResult):
         result = fast
     else:
-        choice = None if solver.select == "first" else world
+        choice = None if solver.select == "first" else world  # one chooses among the solutions that are clear
         result = solver.solve(IKProblem.of(chain, target, choice), q0, rng, first=fast)
     return result if world is None else keep_clear(result, q0, solver, world, rng)

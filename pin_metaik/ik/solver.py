@@ -15,10 +15,12 @@ from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.nullspace import slide
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine import DLS, Refinement, Refiner, make_refiner
+from pin_metaik.ik.refine.dls import PROGRESS
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.select import SELECT
 from pin_metaik.ik.solutions import collect
 from pin_metaik.ik.starts import DEFAULT_SEED, start_batches
+from pin_metaik.ik.target import DEFAULT_TOLERANCE
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
 from pin_metaik.randomness import Rng, as_generator
 
@@ -144,15 +146,17 @@ class IKSolver:
             ledger.x, ledger.met = better if kept else best, True
 
     @cached_property
-    def fast(self) -> DLS | None:
-        """The refiner, if this is the automatic solver, whose first step the fast lane can take."""
-        automatic = self.seeder == "auto" and self.select == "first" and self.budget.seconds is None
-        return self._refiner if automatic and isinstance(self._refiner, DLS) else None
+    def lane(self) -> NDArray[np.float64] | None:
+        """Settings of the fast lane, with the default tolerances, if it can take this solver's first step.
 
-    @cached_property
-    def first_evaluations(self) -> int:
-        """Evaluations that the automatic solver spends on restarts before it turns to a seeder."""
-        return ENDLESS if self.budget.evaluations is None else math.ceil(RESTART_SHARE * self.budget.evaluations)
+        That is the automatic solver's: it restarts its refiner until a share of the budget is spent.
+        """
+        dls, evaluations = self._refiner, self.budget.evaluations
+        automatic = self.seeder == "auto" and self.select == "first" and self.budget.seconds is None
+        if not automatic or not isinstance(dls, DLS):
+            return None
+        first = ENDLESS if evaluations is None else math.ceil(RESTART_SHARE * evaluations)
+        return np.array([dls.damping, PROGRESS, dls.iterations, first, DEFAULT_TOLERANCE, DEFAULT_TOLERANCE])
 
     def _restart(
         self, problem: IKProblem, refiner: Refiner, x0: NDArray[np.float64], rng: Rng, ledger: Ledger, tried: int

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from functools import cached_property
+from functools import cached_property, partial
 from threading import local
 from types import ModuleType
-from typing import TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.errors import FixedFrame, FrameNotFound, InvalidConfiguration, UnknownName
 from pin_metaik.kinematics.atlas import LEAF, SEED, Atlas, chart
+from pin_metaik.kinematics.closed_form import closed_form
 from pin_metaik.kinematics.coordinates import Coordinates, consecutive
 from pin_metaik.kinematics.limits import Limits, finite_or_infinite
 from pin_metaik.kinematics.paths import lay_paths, motion_of
@@ -23,10 +24,20 @@ from pin_metaik.kinematics.reach import Reach, reach_of
 from pin_metaik.optimize import Box
 from pin_metaik.randomness import as_generator
 
-Lane: TypeAlias = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float32]]
-
 REMEMBERED = 16  # sets of samples kept
 MANY = 24  # joints from which on a frame's Jacobian takes less time than all placements, whichever limb it is on
+
+
+class Lane(NamedTuple):
+    """The fast lane of a chain: compiled loops that have been given what they need of it.
+
+    Attributes:
+        solve_pose: Takes starts, settings, a target (4, 4) and q (nq,).
+        solve_poses: Takes starts, settings, targets (k, 4, 4), q (k, nq) and evaluations (k,).
+    """
+
+    solve_pose: Callable[..., Any]
+    solve_poses: Callable[..., Any]
 
 
 class Chain:
@@ -179,26 +190,37 @@ class Chain:
         return gains
 
     def lane(self, oriented: bool) -> Lane:
-        """What the fast lane takes of a chain with one frame, for targets with or without an orientation."""
-        if oriented not in self._lanes:
-            joints = [self.model.joints[int(j)] for j in self.coordinates.joints]
-            self._lanes[oriented] = self.kernels.pack(
-                self.paths.arrays,
-                self.limits.arrays,
-                self.atlas.arrays,
-                (self._least, self._most),
-                np.array([(joint.idx_q, joint.nq == 2) for joint in joints], dtype=np.int64),
-                self.reach(0, oriented).array,
-            )
-        return self._lanes[oriented]
+        """The fast lane of a chain with one frame, for targets with or without an orientation."""
+        try:
+            return self._lanes[oriented]
+        except KeyError:
+            self._lanes[oriented] = lane = self._make_lane(oriented)
+            return lane
+
+    def _make_lane(self, oriented: bool) -> Lane:
+        joints = [self.model.joints[int(j)] for j in self.coordinates.joints]
+        places = np.array([(joint.idx_q, joint.nq == 2) for joint in joints], dtype=np.int64)
+        kernels = self.kernels
+        block = kernels.pack(
+            self.paths.arrays,
+            self.limits.arrays,
+            self.atlas.arrays,
+            (self._least, self._most, places),
+            self.reach(0, oriented).array,
+            closed_form(self.paths),
+        )
+        given = block, None if oriented else kernels.POSITION
+        return Lane(partial(kernels.solve_pose.compiled(oriented), *given), partial(kernels.solve_poses, *given))
 
     def sample(self, count: int, seed: tuple[int, ...]) -> NDArray[np.float64]:
         """Coordinates (count, n) drawn uniformly from the box; one array for a seed, so not to be written to."""
-        if (count, seed) not in self._samples:
+        try:
+            return self._samples[count, seed]
+        except KeyError:
             if len(self._samples) == REMEMBERED:
                 self._samples.clear()
-            self._samples[count, seed] = self.box.sample(as_generator(seed), count)
-        return self._samples[count, seed]
+            self._samples[count, seed] = X = self.box.sample(as_generator(seed), count)
+            return X
 
     def reach(self, tip: int, oriented: bool) -> Reach:
         """Bounds on how far tip number ``tip`` gets, for targets with or without a full orientation."""

@@ -3,25 +3,33 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, Singles, allocating, inline, jit
-from pin_metaik.kinematics.atlas import LEAF
-from pin_metaik.kinematics.descent import Arm, Bounds, workspace
-from pin_metaik.kinematics.guesses import Atlas, lookup_space
+from pin_metaik.compiled import Floats, Ints, allocating, inline, jit
+from pin_metaik.kinematics.branches import ORIGIN, Numbers, Vector, start_on_branch
+from pin_metaik.kinematics.descent import EXACT, Arm, Work, descend_from, workspace
+from pin_metaik.kinematics.guesses import Looks, lookup_space
+from pin_metaik.kinematics.kernels import forward, pose_error
+from pin_metaik.kinematics.packing import Entries, sizes_of, unpack, unpack_atlas
 from pin_metaik.kinematics.pose import ORTHONORMAL
 from pin_metaik.kinematics.reach import ROUNDING
 from pin_metaik.kinematics.searches import search
 
+Quaternion: TypeAlias = tuple[float, float, float, float]
+Desk: TypeAlias = tuple[Floats, Floats, Floats, Floats]
+
 POSITION = np.array([[0, 0], [0, 1], [0, 2]])  # the rows that count where orientation is free
-SOLVED, UNSOLVED, NO_POSE, NO_START = 0, 1, 2, 3
+REFUSED = -1  # evaluations of what is no pose, or no configuration to start from
+DONE, DESCEND, SEARCH = 0, 1, 2  # what is left to do: nothing, from a branch that is nearly there, or from anywhere
 
 
 @inline
 def is_pose(M: Floats) -> bool:
-    """Whether a matrix (4, 4) is a pose: finite, orthonormal, right-handed, last row 0 0 0 1. NaN fails every test."""
+    """Whether a matrix is a pose: (4, 4), finite, orthonormal, right-handed, last row 0 0 0 1. NaN fails every test."""
+    if M.shape[0] != 4 or M.shape[1] != 4:
+        return False
     sound = bool(M[3, 0] == 0.0 and M[3, 1] == 0.0 and M[3, 2] == 0.0 and M[3, 3] == 1.0)
     for i in range(3):
         sound = sound and abs(M[i, 3]) < np.inf
@@ -34,57 +42,41 @@ def is_pose(M: Floats) -> bool:
 
 
 @inline
-def task_of(M: Floats, task: Floats) -> None:
-    """Write the world as seen from the target M (4, 4) into a task."""
+def numbers_of(M: Floats) -> Numbers:
+    """A pose (4, 4) as twelve numbers: rotation row by row, then translation."""
+    return (
+        M[0, 0], M[0, 1], M[0, 2], M[1, 0], M[1, 1], M[1, 2], M[2, 0], M[2, 1], M[2, 2], M[0, 3], M[1, 3], M[2, 3],
+    )  # fmt: skip
+
+
+@inline
+def quaternion(pose: Numbers) -> Quaternion:
+    """Unit quaternion (x, y, z, w) of a pose, with the sign that Pinocchio (Eigen; Shoemake 1987) gives it."""
+    a, b, c, d, e, f, g, h, i = pose[0], pose[1], pose[2], pose[3], pose[4], pose[5], pose[6], pose[7], pose[8]
+    if a + e + i > 0.0:
+        x, y, z, w = h - f, c - g, d - b, 1.0 + a + e + i
+    elif i >= a and i >= e:
+        x, y, z, w = c + g, f + h, 1.0 + i - a - e, d - b
+    elif e > a:
+        x, y, z, w = b + d, 1.0 + e - i - a, h + f, c - g
+    else:
+        x, y, z, w = 1.0 + a - e - i, d + b, g + c, h - f
+    k = 1.0 / math.sqrt(x * x + y * y + z * z + w * w)
+    return k * x, k * y, k * z, k * w
+
+
+@inline
+def write_task(pose: Numbers, oriented: bool, settings: Floats, task: Floats) -> None:
+    """Write a task: the world as seen from the target, slack, weights and tolerances."""
     for i in range(3):
         offset = 0.0
         for j in range(3):
-            task[3 * i + j] = M[j, i]
-            offset -= M[j, i] * M[j, 3]
+            task[3 * i + j] = pose[3 * j + i]
+            offset -= pose[3 * j + i] * pose[9 + j]
         task[9 + i] = offset
-
-
-def pack(
-    arm: Arm, bounds: Bounds, atlas: Atlas, span: tuple[Floats, Floats], places: Ints, reach: Floats
-) -> tuple[Floats, Ints, Singles]:
-    """A chain in three blocks: numbers, whole numbers and the atlas.
-
-    Every argument of a compiled loop costs a call from Python another 90 ns. Of these arguments ``search`` does not
-    have ``span``, limits (nq,) of every entry of q; ``places`` (n, 2), where in q a coordinate is and whether it is a
-    pair (cos, sin); and ``reach`` (8,), what bounds the distance of the tip's point from a world point.
-    """
-    (joints, wiring, ends, tips), (lower, upper, winds), (leaves, entries, gains, scale) = arm, bounds, atlas
-    numbers = joints, tips, lower, upper, np.array([scale]), *span, reach
-    sizes = np.array([len(joints), len(lower), len(span[0]), len(leaves)])
-    return _joined(numbers), _joined((sizes, wiring, ends, winds, places)), _joined((leaves, entries, gains))
-
-
-def _joined(parts: tuple[Floats | Ints | Singles, ...]) -> Any:
-    return np.concatenate([part.ravel() for part in parts])
-
-
-@allocating
-def unpack(
-    numbers: Floats, whole: Ints, tables: Singles
-) -> tuple[Arm, Bounds, Atlas, tuple[Floats, Floats], Ints, Floats]:
-    """What ``pack`` took."""
-    S, n, nq, L = whole[0], whole[1], whole[2], whole[3]
-    a = 14 * S + 12
-    b = a + 2 * n
-    c = b + 1 + 2 * nq
-    d = 6 + 2 * S
-    e = 9 * LEAF * L
-    k = LEAF * (L - 1)
-    wiring, ends = whole[4 : 4 + 2 * S].reshape(S, 2), whole[4 + 2 * S : d]
-    leaves, entries, gains = tables[:e], tables[e : e + k * n], tables[e + k * n :]
-    return (
-        (numbers[: 14 * S].reshape(S, 14), wiring, ends, numbers[14 * S : a].reshape(1, 12)),
-        (numbers[a : a + n], numbers[a + n : b], whole[d : d + n]),
-        (leaves.reshape(L, 9, LEAF), entries.reshape(k, n), gains.reshape(k, n, 6), numbers[b]),
-        (numbers[b + 1 : b + 1 + nq], numbers[b + 1 + nq : c]),
-        whole[d + n : d + 3 * n].reshape(n, 2),
-        numbers[c : c + 8],
-    )
+        task[12 + i], task[15 + i] = 0.0, 0.0 if oriented else np.inf
+        task[18 + i] = task[21 + i] = 1.0
+    task[24], task[25] = 0.999 * settings[4], 0.999 * settings[5]
 
 
 @inline
@@ -102,72 +94,154 @@ def out_of_reach(task: Floats, reach: Floats) -> bool:
     return bool(distance > reach[7] + 1.01 * allowed or distance < reach[6] - 1.01 * allowed)
 
 
-@jit(
-    "void(f8[::1], i8[::1], f4[::1], i8[:,::1]?, f8[:,::1], f8, f8, i8, i8, f8, f8, "
-    "f8[:,:,::1], f8[:,::1], f8[:,::1], i8[:,::1])"
-)
-def solve_poses(
-    numbers: Floats,
-    whole: Ints,
-    tables: Singles,
+@inline
+def read_start(q: Floats, entries: Entries, guess: Floats) -> bool:
+    """Bring q (nq,) inside the limits and read its coordinates; whether all of it is finite."""
+    least, most, places = entries
+    sound = True
+    for e in range(q.shape[0]):
+        sound = sound and abs(q[e]) < np.inf
+        q[e] = min(max(q[e], least[e]), most[e])
+    for c in range(guess.shape[0]):
+        e = places[c, 0]
+        guess[c] = math.atan2(q[e + 1], q[e]) if places[c, 1] == 1 else q[e]
+    return sound
+
+
+@inline
+def write_end(x: Floats, entries: Entries, q: Floats) -> None:
+    """Write coordinates (n,) into q, not a rounding beyond the limits."""
+    least, most, places = entries
+    for c in range(x.shape[0]):
+        e = places[c, 0]
+        if places[c, 1] == 1:
+            q[e], q[e + 1] = math.cos(x[c]), math.sin(x[c])
+        else:
+            q[e] = min(max(x[c], least[e]), most[e])
+
+
+@allocating
+def desk_for(n: int, S: int) -> tuple[Floats, Floats]:
+    """What ``begin`` writes on: task, guess, start, best, and scratch of a forward kinematics."""
+    return np.empty(26 + 3 * n + 18), np.empty((2 * S, 3))
+
+
+@inline
+def laid_out(desk: Floats, n: int) -> Desk:
+    """Task (26,), guess, start and best (n,) on a desk."""
+    return desk[:26], desk[26 : 26 + n], desk[26 + n : 26 + 2 * n], desk[26 + 2 * n : 26 + 3 * n]
+
+
+@inline
+def stands_exactly(arm: Arm, task: Floats, x: Floats, room: Floats, scratch: Floats) -> bool:
+    """Whether the tip at x (n,) is on the target but for rounding: there is nothing left to descend."""
+    joints, wiring, _, tips = arm
+    S = joints.shape[0]
+    pose, error = scratch[:12], scratch[12:]
+    forward(joints, wiring, 0, S, tips[0], task[:12], x, room[:S], room[S:], pose)
+    pose_error(pose, error)
+    square = 0.0
+    for j in range(6):
+        square += error[j] * error[j]
+    return square < EXACT
+
+
+@inline
+def begin(
+    block: Floats, rows: Ints | None, settings: Floats, target: Floats, q: Floats, desk: Floats, room: Floats
+) -> tuple[int, int]:
+    """Do for a target what needs no search: returns evaluations, and what is left to do for ``go_on``."""
+    arm, bounds, entries, reach, form = unpack(block)
+    task, guess, start, best = laid_out(desk, bounds[0].shape[0])
+    if not is_pose(target) or q.shape[0] != entries[0].shape[0] or not read_start(q, entries, guess):
+        return REFUSED, DONE
+    pose = numbers_of(target)
+    write_task(pose, rows is None, settings, task)
+    if out_of_reach(task, reach):
+        return 0, DONE
+    if rows is not None or form.shape[0] == 0 or not start_on_branch(form, arm[1], bounds, pose, guess, start):
+        return 0, SEARCH
+    for c in range(start.shape[0]):
+        best[c] = min(max(start[c], bounds[0][c]), bounds[1][c])
+    if not stands_exactly(arm, task, best, room, desk[desk.shape[0] - 18 :]):
+        return 1, DESCEND
+    write_end(best, entries, q)
+    return 1, DONE
+
+
+@inline
+def go_on(
+    block: Floats,
     rows: Ints | None,
     starts: Floats,
-    damping: float,
-    progress: float,
-    per_start: int,
-    evaluations: int,
-    near: float,
-    aligned: float,
-    targets: Floats,
-    q0: Floats,
+    settings: Floats,
     q: Floats,
-    ended: Ints,
-) -> None:
-    """``search`` for the poses (k, 4, 4) of one tip, each on its own; with the rows ``POSITION``, for their positions.
+    desk: Floats,
+    begun: tuple[int, int],
+    work: Work,
+    looks: Looks,
+) -> int:
+    """Descend from the branch that ``begin`` found, if it did, then ``search``; returns all evaluations."""
+    arm, bounds, entries, _, _ = unpack(block)
+    task, guess, start, best = laid_out(desk, bounds[0].shape[0])
+    tasks = task.reshape(1, 26)
+    descent, most = (settings[0], settings[1], int(settings[2])), int(settings[3])
+    (spent, todo), met = begun, False
+    if todo == DESCEND:
+        steps, met, _ = descend_from(arm, tasks, rows, bounds, start, descent, most, np.inf, best, work)
+        spent += steps
+    if not met:
+        atlas = unpack_atlas(block)
+        spent += search(arm, tasks, rows, bounds, atlas, guess, starts, descent, most - spent, best, work, looks)[0]
+    write_end(best, entries, q)
+    return spent
 
-    ``numbers``, ``whole`` and ``tables`` are the packed chain; ``near`` and ``aligned`` the tolerances, m and rad; q0
-    (k, nq) is where to start from and what other joints keep. Row i of q (k, nq) and of ``ended`` (k, 2), evaluations
-    and one of SOLVED, UNSOLVED, NO_POSE, NO_START, is written. What is proved to be out of reach is UNSOLVED at once.
+
+HOW = "f8[::1], i8[:,::1]?, f8[:,::1], f8[::1]"  # block, rows, starts, settings
+
+
+@jit(f"Tuple((i8, UniTuple(f8, 3), UniTuple(f8, 4)))({HOW}, f8[:,:], f8[::1])")
+def solve_pose(
+    block: Floats, rows: Ints | None, starts: Floats, settings: Floats, target: Floats, q: Floats
+) -> tuple[int, Vector, Quaternion]:
+    """``solve_poses`` for one target (4, 4) and one q (nq,); returns evaluations, and the target's parts."""
+    S, n = sizes_of(block)
+    desk, room = desk_for(n, S)
+    spent, todo = begin(block, rows, settings, target, q, desk, room)
+    if spent == REFUSED:
+        return REFUSED, ORIGIN, (0.0, 0.0, 0.0, 1.0)
+    if todo != DONE:
+        work, looks = workspace(n, rows, S), lookup_space(n, 1)
+        spent = go_on(block, rows, starts, settings, q, desk, (spent, todo), work, looks)
+    pose = numbers_of(target)
+    return spent, (pose[9], pose[10], pose[11]), quaternion(pose)
+
+
+@jit(f"void({HOW}, f8[:,:,::1], f8[:,::1], i8[::1])")
+def solve_poses(
+    block: Floats,
+    rows: Ints | None,
+    starts: Floats,
+    settings: Floats,
+    targets: Floats,
+    q: Floats,
+    evaluations: Ints,
+) -> None:
+    """Search for the poses (k, 4, 4) of one tip, each on its own; with the rows ``POSITION``, for their positions.
+
+    ``block`` is the packed chain; ``settings`` (6,) are damping, progress, evaluations from one start and in all, and
+    the tolerances, m and rad. q (k, nq) is where to start from and what other joints keep, and gets the nearest to the
+    target that was found: by the closed form, if the arm has one, then by ``search``. What is proved to be out of reach
+    is not searched for. ``evaluations`` (k,) gets how many there were, or REFUSED.
     """
-    arm, bounds, atlas, (least, most), places, reach = unpack(numbers, whole, tables)
-    n = bounds[0].shape[0]
-    tasks = np.zeros((1, 26))
-    tasks[0, 15:18] = 0.0 if rows is None else np.inf
-    tasks[0, 18:24] = 1.0
-    tasks[0, 24], tasks[0, 25] = 0.999 * near, 0.999 * aligned
-    work, looks = workspace(n, rows, arm[0].shape[0]), lookup_space(n, 1)
-    guess, best = np.empty(n), np.empty(n)
+    S, n = sizes_of(block)
+    desk, room = desk_for(n, S)
+    work, looks = workspace(n, rows, S), lookup_space(n, 1)
     for i in range(targets.shape[0]):
-        ended[i, 0] = 0
-        if not is_pose(targets[i]):
-            ended[i, 1] = NO_POSE
-            continue
-        sound = True
-        for e in range(q.shape[1]):
-            sound = sound and abs(q0[i, e]) < np.inf
-            q[i, e] = min(max(q0[i, e], least[e]), most[e])
-        if not sound:
-            ended[i, 1] = NO_START
-            continue
-        for c in range(n):
-            e = places[c, 0]
-            guess[c] = math.atan2(q[i, e + 1], q[i, e]) if places[c, 1] == 1 else q[i, e]
-        task_of(targets[i], tasks[0])
-        if out_of_reach(tasks[0], reach):
-            ended[i, 1] = UNSOLVED
-            continue
-        settings = damping, progress, per_start
-        spent, solved_by = search(
-            arm, tasks, rows, bounds, atlas, guess, starts, settings, evaluations, best, work, looks
-        )
-        ended[i, 0] = spent
-        ended[i, 1] = SOLVED if solved_by >= 0 else UNSOLVED
-        for c in range(n):
-            e = places[c, 0]
-            if places[c, 1] == 1:
-                q[i, e], q[i, e + 1] = math.cos(best[c]), math.sin(best[c])
-            else:
-                q[i, e] = min(max(best[c], least[e]), most[e])
+        spent, todo = begin(block, rows, settings, targets[i], q[i], desk, room)
+        if todo != DONE:
+            spent = go_on(block, rows, starts, settings, q[i], desk, (spent, todo), work, looks)
+        evaluations[i] = spent
 
 
 @jit("void(f8[:,:,::1], f8[:,:,::1], f8[:,::1])")

@@ -2,13 +2,12 @@
 
 from pin_metaik.kinematics.guesses import gains_of
 from pin_metaik.kinematics.kernels import costs, poses
-from pin_metaik.kinematics.lane import POSITION, SOLVED, UNSOLVED, distances, pack, solve_poses
+from pin_metaik.kinematics.lane import POSITION, distances, solve_pose, solve_poses
+from pin_metaik.kinematics.packing import pack
 from pin_metaik.kinematics.searches import descend, descend_all, linearize, neighbours
 
 __all__ = [
     "POSITION",
-    "SOLVED",
-    "UNSOLVED",
     "costs",
     "descend",
     "descend_all",
@@ -18,5 +17,6 @@ __all__ = [
     "neighbours",
     "pack",
     "poses",
+    "solve_pose",
     "solve_poses",
 ]

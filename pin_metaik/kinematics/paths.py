@@ -96,6 +96,14 @@ def flat(placement: pin.SE3) -> NDArray[np.float64]:
     return np.concatenate([placement.rotation.ravel(), placement.translation])
 
 
+def matrix_of(flat: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The (4, 4) matrix of a placement (12,)."""
+    matrix = np.eye(4)
+    matrix[:3, :3] = flat[:9].reshape(3, 3)
+    matrix[:3, 3] = flat[9:12]
+    return matrix
+
+
 def lay_paths(
     model: pin.Model,
     frames: Sequence[int],

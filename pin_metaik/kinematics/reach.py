@@ -16,7 +16,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from pin_metaik.kinematics.limits import Limits
-from pin_metaik.kinematics.paths import Paths
+from pin_metaik.kinematics.paths import Paths, matrix_of
 
 ROUNDING = 1e-9  # m, of a bound that is exact in real numbers
 SWEEPS = 50
@@ -109,7 +109,7 @@ def _links(paths: Paths, limits: Limits, tip: int) -> tuple[list[Link], Link, ND
     slack = 0.0
     for s in range(paths.ends[tip], paths.ends[tip + 1]):
         row, (column, rotates) = paths.joints[s], paths.wiring[s]
-        placement = placement @ _matrix(row[:12])
+        placement = placement @ matrix_of(row[:12])
         if rotates:
             links.append(Link(placement[:3, 3] + travel, placement[:3, 2], slack))
             placement, travel, slack = np.eye(4), np.zeros(3), 0.0
@@ -117,13 +117,6 @@ def _links(paths: Paths, limits: Limits, tip: int) -> tuple[list[Link], Link, ND
             ends = row[12] * np.array([limits.lower[column], limits.upper[column]]) + row[13]
             travel = travel + ends.mean() * placement[:3, 2]
             slack += 0.5 * float(abs(ends[1] - ends[0]))
-    placement = placement @ _matrix(paths.tips[tip])
+    placement = placement @ matrix_of(paths.tips[tip])
     placement[:3, 3] += travel
     return links, Link(placement[:3, 3], np.zeros(3), slack), placement
-
-
-def _matrix(flat: NDArray[np.float64]) -> NDArray[np.float64]:
-    matrix = np.eye(4)
-    matrix[:3, :3] = flat[:9].reshape(3, 3)
-    matrix[:3, 3] = flat[9:12]
-    return matrix

@@ -1,0 +1,199 @@
+"""The closed form of an arm whose axes meet and are parallel in the right places: eight configurations for a pose.
+
+Elias and Wen, "IK-Geo: unified robot inverse kinematics using subproblem decomposition", Mechanism and Machine Theory
+209, 2025. Two subproblems do for both kinds of arms (see ``closed_form``): the turn about an axis that takes one
+vector to another (Paden and Kahan's first), and the two that take a vector to where it has a given component along
+another (their fourth; their third, a distance, is the same).
+
+What comes out starts a descent, so that it need not be exact: where an arm is built almost like that, where a target
+is a little out of reach, or where a joint's angle is lost in rounding, there is something left to descend.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+import numpy as np
+
+from pin_metaik.compiled import Floats, Ints, inline
+from pin_metaik.kinematics.descent import Bounds
+from pin_metaik.kinematics.kernels import cos_sin
+
+Vector: TypeAlias = tuple[float, float, float]
+Turn: TypeAlias = tuple[float, float]  # cosine and sine
+Numbers: TypeAlias = tuple[float, ...]
+ORIGIN = 0.0, 0.0, 0.0
+TURN = 2.0 * np.pi
+LOST = 1e-9  # m or m^2: lever below which an angle is rounding, and may be anything
+SHORT = 1e-6  # of the squared lever that may be missing: an arm is built to nine digits, and stretched
+OUTSIDE = 1e-9  # rad that rounding may take a solution beyond a limit
+
+
+@inline
+def row(form: Floats, i: int) -> Vector:
+    """Row i as a vector."""
+    return form[i, 0], form[i, 1], form[i, 2]
+
+
+@inline
+def dot(a: Vector, b: Vector) -> float:
+    """a . b."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inline
+def cross(a: Vector, b: Vector) -> Vector:
+    """a x b."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@inline
+def plus(a: Vector, b: Vector) -> Vector:
+    """a + b."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+@inline
+def minus(a: Vector, b: Vector) -> Vector:
+    """a - b."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+@inline
+def rotated(pose: Numbers, v: Vector) -> Vector:
+    """R v, with the rotation of a pose (12,)."""
+    return (
+        pose[0] * v[0] + pose[1] * v[1] + pose[2] * v[2],
+        pose[3] * v[0] + pose[4] * v[1] + pose[5] * v[2],
+        pose[6] * v[0] + pose[7] * v[1] + pose[8] * v[2],
+    )
+
+
+@inline
+def turned(k: Vector, turn: Turn, v: Vector) -> Vector:
+    """Rot(k, turn) v (Rodrigues)."""
+    cos, sin = turn
+    along, across = (1.0 - cos) * dot(k, v), cross(k, v)
+    return (
+        cos * v[0] + sin * across[0] + along * k[0],
+        cos * v[1] + sin * across[1] + along * k[1],
+        cos * v[2] + sin * across[2] + along * k[2],
+    )
+
+
+@inline
+def back(turn: Turn) -> Turn:
+    """The turn the other way."""
+    return turn[0], -turn[1]
+
+
+@inline
+def angle(turn: Turn) -> float:
+    """The angle of a turn, in [-pi, pi]."""
+    return math.atan2(turn[1], turn[0])
+
+
+@inline
+def turn_from_to(k: Vector, a: Vector, b: Vector, guess: Turn) -> Turn:
+    """The turn with Rot(k, turn) a = b, seen along k; the guess where a is on k."""
+    cos, sin = dot(a, b) - dot(k, a) * dot(k, b), dot(k, cross(a, b))
+    size = math.sqrt(cos * cos + sin * sin)
+    return (cos / size, sin / size) if size > LOST else guess
+
+
+@inline
+def turn_onto(h: Vector, k: Vector, p: Vector, d: float, guess: Turn, other: bool) -> tuple[Turn, bool]:
+    """The turn with h . Rot(k, turn) p = d: of two the one nearer to the guess, or the other; and whether there is.
+
+    If there is none, it is the one that comes nearest to d.
+    """
+    # h . Rot(k, turn) p - along = size cos(turn - middle), which shall be rest = size cos(half)
+    along = dot(h, k) * dot(k, p)
+    cos, sin, rest = dot(h, p) - along, dot(h, cross(k, p)), d - along
+    square = cos * cos + sin * sin
+    size = math.sqrt(square)
+    if size < LOST:
+        return guess, True
+    left = square - rest * rest
+    rest, root = (rest, math.sqrt(left)) if left > 0.0 else (math.copysign(size, rest), 0.0)
+    if (guess[1] * cos >= guess[0] * sin) == other:
+        root = -root
+    return ((cos * rest - sin * root) / square, (sin * rest + cos * root) / square), left >= -SHORT * square
+
+
+@inline
+def triangle(form: Floats, reach: Vector, guess: Numbers, other: bool) -> tuple[Turn, Turn, bool]:
+    """Turns 2 and 3 that take O4 from O2 to where it shall be, and whether they can."""
+    h2, h3, upper, fore = row(form, 1), row(form, 2), row(form, 8), row(form, 9)
+    d = 0.5 * (dot(reach, reach) - dot(upper, upper) - dot(fore, fore))
+    t3, spans = turn_onto(upper, h3, fore, d, cos_sin(guess[2]), other)
+    return turn_from_to(h2, plus(upper, turned(h3, t3, fore)), reach, cos_sin(guess[1])), t3, spans
+
+
+@inline
+def wrist(
+    form: Floats, ahead: Vector, across: Vector, first: float, guess: Numbers, other: bool
+) -> tuple[Turn, Turn, Turn, bool]:
+    """Turns 4, 5 and 6 that take axis 6 and a direction across it to where they shall be, and whether they can."""
+    h4, h5, h6 = row(form, 3), row(form, 4), row(form, 5)
+    t5, bends = turn_onto(h4, h5, h6, dot(h4, ahead), cos_sin(guess[4]), other)
+    t4 = turn_from_to(h4, turned(h5, t5, h6), ahead, cos_sin(first))
+    t6 = turn_from_to(h6, row(form, 14), turned(h5, back(t5), turned(h4, back(t4), across)), cos_sin(guess[5]))
+    return t4, t5, t6, bends
+
+
+@inline
+def branch(form: Floats, pose: Numbers, guess: Numbers, number: int) -> tuple[Numbers, bool]:
+    """The six angles of one of the eight branches, and whether there is one.
+
+    Branch 0 is the one that the guess is on; the bits say which of shoulder, wrist and elbow is on the other side.
+    """
+    h1, h2, h3, h4 = row(form, 0), row(form, 1), row(form, 2), row(form, 3)
+    shoulder, flip, elbow = number & 1 != 0, number & 2 != 0, number & 4 != 0
+    # From O1 to O5, axis 6 and a direction across it: first as the world sees them, then as link 1 does.
+    reach = minus(minus((pose[9], pose[10], pose[11]), row(form, 6)), rotated(pose, row(form, 11)))
+    t1, turns = turn_onto(h2, minus(ORIGIN, h1), reach, form[19, 0], cos_sin(guess[0]), shoulder)
+    reach = minus(turned(h1, back(t1), reach), row(form, 7))
+    ahead = turned(h1, back(t1), rotated(pose, row(form, 12)))
+    across = turned(h1, back(t1), rotated(pose, row(form, 13)))
+    s2, s3 = form[19, 1], form[19, 2]
+    if s2 != 0.0:  # axes 2, 3 and 4 are parallel, and turn the wrist together
+        t4, t5, t6, bends = wrist(form, ahead, across, guess[3] + s3 * guess[2] + s2 * guess[1], guess, flip)
+        t2, t3, spans = triangle(form, minus(reach, turned(h4, t4, row(form, 10))), guess, elbow)
+        a2, a3 = angle(t2), angle(t3)
+        a4 = angle(t4) - s3 * a3 - s2 * a2
+    else:
+        t2, t3, spans = triangle(form, reach, guess, elbow)
+        ahead = turned(h3, back(t3), turned(h2, back(t2), ahead))
+        across = turned(h3, back(t3), turned(h2, back(t2), across))
+        t4, t5, t6, bends = wrist(form, ahead, across, guess[3], guess, flip)
+        a2, a3, a4 = angle(t2), angle(t3), angle(t4)
+    return (angle(t1), a2, a3, a4, angle(t5), angle(t6)), turns and spans and bends
+
+
+@inline
+def wrapped(angle: float) -> float:
+    """The same angle in [-pi, pi]."""
+    return float(angle - TURN * np.round(angle / TURN))
+
+
+@inline
+def start_on_branch(form: Floats, wiring: Ints, bounds: Bounds, pose: Numbers, guess: Floats, start: Floats) -> bool:
+    """Coordinates (6,) of the first branch that the limits allow, whole turns nearest to the guess; whether one is."""
+    lower, upper, _ = bounds
+    for s in range(6):  # the guess as angles
+        start[s] = form[17 + s // 3, s % 3] * guess[wiring[s, 0]] + form[15 + s // 3, s % 3]
+    on = start[0], start[1], start[2], start[3], start[4], start[5]
+    for number in range(8):
+        angles, inside = branch(form, pose, on, number)
+        for s in range(6):
+            c = wiring[s, 0]
+            x = form[17 + s // 3, s % 3] * (angles[s] - form[15 + s // 3, s % 3])
+            x = guess[c] + wrapped(x - guess[c])
+            x += TURN if x < lower[c] - OUTSIDE else (-TURN if x > upper[c] + OUTSIDE else 0.0)
+            inside = inside and lower[c] - OUTSIDE <= x <= upper[c] + OUTSIDE
+            start[c] = x
+        if inside:
+            return True
+    return False

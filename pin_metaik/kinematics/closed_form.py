@@ -1,0 +1,76 @@
+"""Which axes of an arm meet and which are parallel: what a closed form of its inverse kinematics has to know.
+
+Two kinds of arms of six turning joints have the same one (see ``branches``): those with a wrist whose three axes meet
+behind two parallel ones, like most industrial arms, and those with three parallel axes and two that meet, like
+Universal Robots' arms.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.kinematics.paths import Paths, matrix_of
+
+CLOSE = 1e-4  # m or rad: axes this near to each other meet, or are parallel; what that leaves, a descent takes away
+ROWS = 20
+
+Floats = NDArray[np.float64]
+
+
+def closed_form(paths: Paths) -> Floats:
+    """What ``branches`` takes (ROWS, 3), or no rows (0, 3) for an arm of neither kind.
+
+    In the configuration where all angles are 0, in the world frame unless said otherwise:
+
+    * 0 to 5: the axes.
+    * 6: a point O1 on axis 1; 7 to 10: the ways from there to O2, O3, O4 and O5, where the last axes meet; of a wrist
+      with three axes O4 is O5.
+    * 11: from O5 to the tip, 12: axis 6, both in the tip frame; 13 and 14: a direction across axis 6, in the tip frame
+      and in the world frame.
+    * 15 and 16: shifts of the coordinates, 17 and 18: their signs (angle = sign x + shift).
+    * 19: how far it is from O1 to O5 along axis 2, and, of three parallel axes, whether axes 2 and 3 point as axis 4
+      does (1) or the other way (-1); else 0.
+    """
+    none = np.zeros((0, 3))
+    single = len(paths.ends) == 2 and len(paths.joints) == 6 and len(set(paths.wiring[:, 0].tolist())) == 6
+    if not single or not (paths.wiring[:, 1] == 1).all() or not (np.abs(paths.joints[:, 12]) == 1.0).all():
+        return none
+    frames = np.empty((7, 4, 4))
+    placement = np.eye(4)
+    for i, row in enumerate([*paths.joints, paths.tips[0]]):
+        placement = frames[i] = placement @ matrix_of(row[:12])
+    axes, points = frames[:6, :3, 2], frames[:6, :3, 3].copy()
+    wrist = _meeting(axes[4:], points[4:])
+    if wrist is None or not _parallel(axes[1], axes[2]):
+        return none
+    points[4] = wrist
+    sides = np.zeros(2)
+    if _parallel(axes[1], axes[3]):
+        sides = np.round(axes[1:3] @ axes[3])
+    elif np.linalg.norm(np.cross(wrist - points[3], axes[3])) < CLOSE:
+        points[3] = wrist
+    else:
+        return none
+    rotation, position = frames[6, :3, :3], frames[6, :3, 3]
+    across = np.linalg.svd(axes[5][None])[2][1]
+    ways = np.diff(points[:5], axis=0)
+    to_tip = [position - wrist, axes[5], across] @ rotation  # seen from the tip
+    level = axes[1] @ ways.sum(axis=0)
+    shifts, signs = paths.joints[:, 13].reshape(2, 3), paths.joints[:, 12].reshape(2, 3)
+    return np.array([*axes, points[0], *ways, *to_tip, across, *shifts, *signs, [level, *sides]])
+
+
+def _parallel(a: Floats, b: Floats) -> bool:
+    return bool(np.linalg.norm(np.cross(a, b)) < CLOSE)
+
+
+def _meeting(axes: Floats, points: Floats) -> Floats | None:
+    """Where two axes (2, 3) through two points (2, 3) meet, if they do."""
+    if _parallel(*axes):
+        return None
+    ways = np.stack([axes[0], -axes[1]], axis=1)
+    along, *_ = np.linalg.lstsq(ways, points[1] - points[0], rcond=None)
+    near = points + along[:, None] * axes
+    met: Floats = near.mean(axis=0)
+    return met if np.linalg.norm(near[0] - near[1]) < CLOSE else None
