@@ -10,6 +10,9 @@ from pin_metaik.errors import InvalidSetting
 
 Rng: TypeAlias = int | np.random.Generator | None
 
+DEFAULT_SEED = 0
+"""What ``rng=None`` stands for in inverse kinematics: the same call gives the same answer."""
+
 
 def as_generator(rng: Rng | tuple[int, ...]) -> np.random.Generator:
     """The generator itself, or one seeded with a number or numbers; with ``None`` from the operating system.

@@ -20,9 +20,9 @@ from pin_metaik.ik.problem import check_world
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solve import solve_ik
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
-from pin_metaik.ik.starts import LANE, drawn
+from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import Target, TargetLike
-from pin_metaik.kinematics import Chain
+from pin_metaik.kinematics import LANE, Chain
 from pin_metaik.randomness import Rng
 
 CHUNKS, LEAST, MOST = 4, 16, 256  # parts for each worker, and how many targets are in one
@@ -133,10 +133,10 @@ def solve_ik_batch(
     with ThreadPoolExecutor(workers) as pool:
         left: Iterable[int] = range(k)
         if array is not None and settings is not None:
-            poses, starts, oriented = _as_poses(array), drawn(chain, seed, 0, LANE), array.ndim == 3
-            if not oriented:
-                settings = np.array([*settings[:5], math.inf])
-            lane = chain.lane(oriented)
+            poses, starts = _as_poses(array), drawn(chain, seed, 0, LANE)
+            lane = chain.pose_lane
+            if array.ndim == 2:
+                lane, settings = chain.position_lane, np.array([*settings[:5], math.inf])
 
             def together(part: slice) -> NDArray[np.int64]:
                 lane.solve_poses(starts, settings, poses[part], batch.q[part], batch.evaluations[part])
@@ -181,7 +181,7 @@ def _errors(chain: Chain, q: NDArray[np.float64], poses: NDArray[np.float64]) ->
     reached, errors = np.empty((len(q), 4, 4)), np.empty((len(q), 2))
     with chain.lent_data() as data:
         for i, one in enumerate(q):
-            reached[i] = chain.place(data, one).homogeneous
+            reached[i] = chain.place(one, data).homogeneous
     chain.kernels.distances(poses, reached, errors)
     return errors
 

@@ -13,9 +13,9 @@ from pin_metaik.ik.ledger import Ledger
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.push import Push
 from pin_metaik.ik.solutions import VAIN, VAIN_EACH, gather
-from pin_metaik.ik.starts import BATCH, DEFAULT_SEED, drawn
+from pin_metaik.ik.starts import BATCH, drawn
 from pin_metaik.optimize import Metaheuristic, minimize
-from pin_metaik.randomness import Rng, as_generator
+from pin_metaik.randomness import DEFAULT_SEED, Rng, as_generator
 
 NEAREST = 24  # entries of the atlas to start from
 CANDIDATES = 256  # solutions kept, to be told apart

@@ -20,9 +20,9 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.ik.refine.protocol import Refinement
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solver import IKSolver
-from pin_metaik.ik.starts import FIRST_SEED, LANE, drawn
+from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import DEFAULT_TOLERANCE, Target
-from pin_metaik.kinematics import Chain
+from pin_metaik.kinematics import LANE, Chain
 from pin_metaik.randomness import Rng
 
 SOLVED = IKStatus.SOLVED
@@ -53,19 +53,21 @@ def solve_fast(
         if converted is None:
             return None
         asked = matrix = converted
-    oriented = aligned < math.inf
-    starts = chain.sample(LANE, FIRST_SEED) if rng is None else drawn(chain, rng, 0, LANE)
+    lane = chain.pose_lane if aligned < math.inf else chain.position_lane
+    starts = lane.starts if rng is None else drawn(chain, rng, 0, LANE)
     given = chain.reference if q0 is None else q0
     try:
         q = given.copy() if isinstance(given, np.ndarray) else np.array(given, dtype=float)
-        spent, position, quaternion = chain.lane(oriented).solve_pose(starts, settings, matrix, q)
+        spent, position, quaternion = lane.solve_pose(starts, settings, matrix, q)
     except (TypeError, ValueError):  # whatever it is, the long way takes it or says what is wrong
         return None
     if spent < 0:
         return None
-    place = pin.SE3ToXYZQUATtuple(chain.place(chain.data, q))
-    distance = math.dist(place[:3], position)
-    angle = angle_between(place[3:], quaternion) if oriented else 0.0
+    place = pin.SE3ToXYZQUATtuple(chain.place(q))
+    distance, chord = math.dist(place[:3], position), math.dist(place[3:], quaternion)
+    if chord > 1.0:  # an orientation has two quaternions
+        chord = min(chord, math.dist(place[3:], [-v for v in quaternion]))
+    angle = 4.0 * math.asin(0.5 * chord) if aligned < math.inf else 0.0  # of small angles exact, unlike a cosine
     if distance > near or angle > aligned:
         return Refinement(chain.x(q), False, spent)
     return IKResult(q, SOLVED, distance, angle, spent, perf_counter() - began, chain, asked)
@@ -78,11 +80,3 @@ def as_matrix(target: object) -> NDArray[np.float64] | None:
     except (TypeError, ValueError):
         return None
     return matrix if matrix.shape == (4, 4) else None
-
-
-def angle_between(a: tuple[float, ...], b: tuple[float, ...]) -> float:
-    """Angle (rad) between orientations given as unit quaternions: of small angles exact to the last digit."""
-    chord = math.dist(a, b)
-    if chord > 1.0:  # the same orientation has two; this one may be nearer
-        chord = min(chord, math.dist(a, [-v for v in b]))
-    return 4.0 * math.asin(0.5 * chord)

@@ -118,6 +118,12 @@ class IKProblem:
         self.chain.kernels.linearize(*self.chain.paths.arrays, self.tasks, self.rows, x, r, J)
         return r, J
 
+    def branches(self, x0: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Coordinates (b, n) that the arm's closed form has for a whole pose, if it has one; see ``Chain.branches``."""
+        if self.descended is not None:
+            return np.empty((0, self.chain.n))
+        return self.chain.branches(self.targets[0].pose.homogeneous, x0)
+
     def near(self, count: int) -> NDArray[np.float64]:
         """Sampled coordinates (count, n) of the chain's atlas with the poses nearest to the targets, nearest first."""
         out = np.empty((count, self.chain.n))

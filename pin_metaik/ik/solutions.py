@@ -71,8 +71,9 @@ def solve_ik_all(
 ) -> IKSolutions:
     """Find all distinct solutions of a target, until no new one appears.
 
-    Solutions that differ by whole turns count as one and come as the copy nearest to ``q0``. Descents start from an
-    atlas of the chain, from random configurations, and from the solutions known with one joint turned half round.
+    Solutions that differ by whole turns count as one and come as the copy nearest to ``q0``. Descents start from what a
+    closed form says, if the arm has one; otherwise, and in singularities, from an atlas of the chain, from random
+    configurations, and from the solutions known with one joint turned half round.
 
     Args:
         chain: The joints to move and the frames to place.
@@ -119,7 +120,10 @@ def collect(
     began = perf_counter()
     found = np.empty((limit, problem.chain.n))
     total = budget.evaluations or 0
-    known = vain = spent = 0
+    known, complete, spent = _by_closed_form(problem, x0, found, apart, total)
+    if complete:
+        return found[:known], True, spent
+    vain = 0
     for index in count():
         starts = drawn(problem.chain, rng, index, BATCH)
         if index == 0:
@@ -134,6 +138,24 @@ def collect(
         if known == limit or spent >= total or late or (vain >= enough) or (known == 0 and problem.gap > 0.0):
             return found[:known], known < limit and vain >= enough, spent
     raise AssertionError("count() does not end")
+
+
+def _by_closed_form(
+    problem: IKProblem, x0: NDArray[np.float64], found: NDArray[np.float64], apart: float, evaluations: int
+) -> tuple[int, bool, int]:
+    """Descend from the branches of the arm's closed form: solutions, whether these are all, and evaluations.
+
+    In a singularity a joint that does not matter stays where it is: from somewhere else there are others.
+    """
+    known = spent = before = 0
+    elsewhere = np.where(x0 + 1.0 < problem.limits.upper, x0 + 1.0, x0 - 1.0)
+    for x in (x0, problem.limits.clip(elsewhere)):
+        starts, before = problem.branches(x), known
+        taken, known, _ = gather(
+            problem, starts, found, known, apart, len(starts) + 1, evaluations - spent, branch=False
+        )
+        spent += taken
+    return known, 0 < known == before < len(found) and spent < evaluations, spent
 
 
 def gather(

@@ -19,10 +19,10 @@ from pin_metaik.ik.refine.dls import PROGRESS
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.select import SELECT
 from pin_metaik.ik.solutions import collect
-from pin_metaik.ik.starts import DEFAULT_SEED, start_batches
+from pin_metaik.ik.starts import start_batches
 from pin_metaik.ik.target import DEFAULT_TOLERANCE
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
-from pin_metaik.randomness import Rng, as_generator
+from pin_metaik.randomness import DEFAULT_SEED, Rng, as_generator
 
 ELITE = 8  # points of a seeder's search that are refined
 SEEDER_SHARE = 0.25  # of the budget, for one round of the seeder before its elite is refined

@@ -9,11 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.kinematics import Chain
-from pin_metaik.randomness import Rng
+from pin_metaik.randomness import DEFAULT_SEED, Rng
 
-DEFAULT_SEED = 0
-FIRST_SEED = DEFAULT_SEED, 0  # of the first batch, by default
-LANE = 256  # starts of the fast lane
 FIRST, BATCH = 16, 64  # starts refined before the first look at the clock and at the reach, and between further ones
 
 

@@ -16,7 +16,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, inline
+from pin_metaik.compiled import Floats, Ints, inline, jit
 from pin_metaik.kinematics.descent import Bounds
 from pin_metaik.kinematics.kernels import cos_sin
 
@@ -26,14 +26,14 @@ Numbers: TypeAlias = tuple[float, ...]
 ORIGIN = 0.0, 0.0, 0.0
 TURN = 2.0 * np.pi
 LOST = 1e-9  # m or m^2: lever below which an angle is rounding, and may be anything
-SHORT = 1e-6  # of the squared lever that may be missing: an arm is built to nine digits, and stretched
+SHORT = 1e-5  # of the squared lever that may be missing: an arm is built to nine digits, and stretched
 OUTSIDE = 1e-9  # rad that rounding may take a solution beyond a limit
 
 
 @inline
-def row(form: Floats, i: int) -> Vector:
-    """Row i as a vector."""
-    return form[i, 0], form[i, 1], form[i, 2]
+def vector(row: Floats) -> Vector:
+    """A row (3,) of a closed form as a vector."""
+    return row[0], row[1], row[2]
 
 
 @inline
@@ -125,7 +125,7 @@ def turn_onto(h: Vector, k: Vector, p: Vector, d: float, guess: Turn, other: boo
 @inline
 def triangle(form: Floats, reach: Vector, guess: Numbers, other: bool) -> tuple[Turn, Turn, bool]:
     """Turns 2 and 3 that take O4 from O2 to where it shall be, and whether they can."""
-    h2, h3, upper, fore = row(form, 1), row(form, 2), row(form, 8), row(form, 9)
+    h2, h3, upper, fore = vector(form[1]), vector(form[2]), vector(form[8]), vector(form[9])
     d = 0.5 * (dot(reach, reach) - dot(upper, upper) - dot(fore, fore))
     t3, spans = turn_onto(upper, h3, fore, d, cos_sin(guess[2]), other)
     return turn_from_to(h2, plus(upper, turned(h3, t3, fore)), reach, cos_sin(guess[1])), t3, spans
@@ -136,10 +136,10 @@ def wrist(
     form: Floats, ahead: Vector, across: Vector, first: float, guess: Numbers, other: bool
 ) -> tuple[Turn, Turn, Turn, bool]:
     """Turns 4, 5 and 6 that take axis 6 and a direction across it to where they shall be, and whether they can."""
-    h4, h5, h6 = row(form, 3), row(form, 4), row(form, 5)
+    h4, h5, h6 = vector(form[3]), vector(form[4]), vector(form[5])
     t5, bends = turn_onto(h4, h5, h6, dot(h4, ahead), cos_sin(guess[4]), other)
     t4 = turn_from_to(h4, turned(h5, t5, h6), ahead, cos_sin(first))
-    t6 = turn_from_to(h6, row(form, 14), turned(h5, back(t5), turned(h4, back(t4), across)), cos_sin(guess[5]))
+    t6 = turn_from_to(h6, vector(form[14]), turned(h5, back(t5), turned(h4, back(t4), across)), cos_sin(guess[5]))
     return t4, t5, t6, bends
 
 
@@ -149,18 +149,18 @@ def branch(form: Floats, pose: Numbers, guess: Numbers, number: int) -> tuple[Nu
 
     Branch 0 is the one that the guess is on; the bits say which of shoulder, wrist and elbow is on the other side.
     """
-    h1, h2, h3, h4 = row(form, 0), row(form, 1), row(form, 2), row(form, 3)
+    h1, h2, h3, h4 = vector(form[0]), vector(form[1]), vector(form[2]), vector(form[3])
     shoulder, flip, elbow = number & 1 != 0, number & 2 != 0, number & 4 != 0
     # From O1 to O5, axis 6 and a direction across it: first as the world sees them, then as link 1 does.
-    reach = minus(minus((pose[9], pose[10], pose[11]), row(form, 6)), rotated(pose, row(form, 11)))
-    t1, turns = turn_onto(h2, minus(ORIGIN, h1), reach, form[19, 0], cos_sin(guess[0]), shoulder)
-    reach = minus(turned(h1, back(t1), reach), row(form, 7))
-    ahead = turned(h1, back(t1), rotated(pose, row(form, 12)))
-    across = turned(h1, back(t1), rotated(pose, row(form, 13)))
-    s2, s3 = form[19, 1], form[19, 2]
+    reach = minus(minus((pose[9], pose[10], pose[11]), vector(form[6])), rotated(pose, vector(form[11])))
+    t1, turns = turn_onto(h2, minus(ORIGIN, h1), reach, form[15, 0], cos_sin(guess[0]), shoulder)
+    reach = minus(turned(h1, back(t1), reach), vector(form[7]))
+    ahead = turned(h1, back(t1), rotated(pose, vector(form[12])))
+    across = turned(h1, back(t1), rotated(pose, vector(form[13])))
+    s2, s3 = form[15, 1], form[15, 2]
     if s2 != 0.0:  # axes 2, 3 and 4 are parallel, and turn the wrist together
         t4, t5, t6, bends = wrist(form, ahead, across, guess[3] + s3 * guess[2] + s2 * guess[1], guess, flip)
-        t2, t3, spans = triangle(form, minus(reach, turned(h4, t4, row(form, 10))), guess, elbow)
+        t2, t3, spans = triangle(form, minus(reach, turned(h4, t4, vector(form[10]))), guess, elbow)
         a2, a3 = angle(t2), angle(t3)
         a4 = angle(t4) - s3 * a3 - s2 * a2
     else:
@@ -173,27 +173,53 @@ def branch(form: Floats, pose: Numbers, guess: Numbers, number: int) -> tuple[Nu
 
 
 @inline
-def wrapped(angle: float) -> float:
-    """The same angle in [-pi, pi]."""
-    return float(angle - TURN * np.round(angle / TURN))
+def on_branch(form: Floats, wiring: Ints, bounds: Bounds, pose: Numbers, guess: Floats, number: int, x: Floats) -> bool:
+    """Coordinates x (6,) of one branch, whole turns nearest to the guess; whether it is there and inside the limits."""
+    lower, upper, _ = bounds
+    for s in range(6):
+        x[s] = guess[wiring[s, 0]]
+    angles, inside = branch(form, pose, (x[0], x[1], x[2], x[3], x[4], x[5]), number)
+    for s in range(6):
+        c = wiring[s, 0]
+        away = angles[s] - guess[c]
+        there = guess[c] + away - TURN * np.round(away / TURN)
+        there += TURN if there < lower[c] - OUTSIDE else (-TURN if there > upper[c] + OUTSIDE else 0.0)
+        inside = inside and lower[c] - OUTSIDE <= there <= upper[c] + OUTSIDE
+        x[c] = there
+    return inside
 
 
 @inline
-def start_on_branch(form: Floats, wiring: Ints, bounds: Bounds, pose: Numbers, guess: Floats, start: Floats) -> bool:
-    """Coordinates (6,) of the first branch that the limits allow, whole turns nearest to the guess; whether one is."""
-    lower, upper, _ = bounds
-    for s in range(6):  # the guess as angles
-        start[s] = form[17 + s // 3, s % 3] * guess[wiring[s, 0]] + form[15 + s // 3, s % 3]
-    on = start[0], start[1], start[2], start[3], start[4], start[5]
-    for number in range(8):
-        angles, inside = branch(form, pose, on, number)
-        for s in range(6):
-            c = wiring[s, 0]
-            x = form[17 + s // 3, s % 3] * (angles[s] - form[15 + s // 3, s % 3])
-            x = guess[c] + wrapped(x - guess[c])
-            x += TURN if x < lower[c] - OUTSIDE else (-TURN if x > upper[c] + OUTSIDE else 0.0)
-            inside = inside and lower[c] - OUTSIDE <= x <= upper[c] + OUTSIDE
-            start[c] = x
-        if inside:
+def first_branch(form: Floats, wiring: Ints, bounds: Bounds, pose: Numbers, guess: Floats, x: Floats) -> bool:
+    """Coordinates x (6,) of the first branch that there is inside the limits; whether one is."""
+    for number in range(8):  # noqa: SIM110  any(...) takes a generator, which numba does not
+        if on_branch(form, wiring, bounds, pose, guess, number, x):
             return True
     return False
+
+
+@inline
+def numbers_of(M: Floats) -> Numbers:
+    """A pose (4, 4) as twelve numbers: rotation row by row, then translation."""
+    return (
+        M[0, 0], M[0, 1], M[0, 2], M[1, 0], M[1, 1], M[1, 2], M[2, 0], M[2, 1], M[2, 2], M[0, 3], M[1, 3], M[2, 3],
+    )  # fmt: skip
+
+
+@jit("i8(f8[:,::1], i8[:,::1], f8[::1], f8[::1], i8[::1], f8[:,:], f8[::1], f8[:,::1])")
+def all_branches(
+    form: Floats,
+    wiring: Ints,
+    lower: Floats,
+    upper: Floats,
+    winds: Ints,
+    target: Floats,
+    guess: Floats,
+    out: Floats,
+) -> int:
+    """All branches inside the limits for a target (4, 4), the guess's first: how many rows of out (8, 6) they are."""
+    count = 0
+    for number in range(8):
+        if on_branch(form, wiring, (lower, upper, winds), numbers_of(target), guess, number, out[count]):
+            count += 1
+    return count

@@ -22,10 +22,18 @@ from pin_metaik.kinematics.limits import Limits, finite_or_infinite
 from pin_metaik.kinematics.paths import lay_paths, motion_of
 from pin_metaik.kinematics.reach import Reach, reach_of
 from pin_metaik.optimize import Box
-from pin_metaik.randomness import as_generator
+from pin_metaik.randomness import DEFAULT_SEED, as_generator
 
+LANE = 256  # random starts of the fast lane
 REMEMBERED = 16  # sets of samples kept
 MANY = 24  # joints from which on a frame's Jacobian takes less time than all placements, whichever limb it is on
+
+
+class _Own(local):
+    """What each thread has of its own."""
+
+    def __init__(self, model: pin.Model) -> None:
+        self.data = model.createData()
 
 
 class Lane(NamedTuple):
@@ -34,10 +42,12 @@ class Lane(NamedTuple):
     Attributes:
         solve_pose: Takes starts, settings, a target (4, 4) and q (nq,).
         solve_poses: Takes starts, settings, targets (k, 4, 4), q (k, nq) and evaluations (k,).
+        starts: (LANE, n) drawn with the default seed.
     """
 
     solve_pose: Callable[..., Any]
     solve_poses: Callable[..., Any]
+    starts: NDArray[np.float64]
 
 
 class Chain:
@@ -108,21 +118,16 @@ class Chain:
         self._least[entries], self._most[entries] = self.limits.lower[plain], self.limits.upper[plain]
         self.paths = lay_paths(model, self.frame_ids, {j: c for c, j in enumerate(drivers)}, motions, self.reference)
         self.kernels = _kernels()
-        self._local = local()
+        self._own = _Own(model)
         self._samples: dict[tuple[int, tuple[int, ...]], NDArray[np.float64]] = {}
         self._many_limbs = model.njoints > MANY
         self._spare: list[pin.Data] = []
-        self._lanes: dict[bool, Lane] = {}
         self._reaches: dict[tuple[int, bool], Reach] = {}
 
     @property
     def data(self) -> pin.Data:
         """Pinocchio's scratch for this model, one a thread."""
-        try:
-            return self._local.data
-        except AttributeError:
-            self._local.data = self.model.createData()
-            return self._local.data
+        return self._own.data
 
     @contextmanager
     def lent_data(self) -> Iterator[pin.Data]:
@@ -182,6 +187,21 @@ class Chain:
         X = self.limits.one_turn().box().sample(np.random.default_rng(SEED), LEAF * LEAF)
         return chart(X, self.poses(X), self._gains)
 
+    @cached_property
+    def form(self) -> NDArray[np.float64]:
+        """What the arm's closed form needs to know of it; no rows, if it has none."""
+        return closed_form(self.paths)
+
+    def branches(self, pose: NDArray[np.float64], x0: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Coordinates (b, n) that an arm's closed form has for a pose (4, 4), the branch that x0 (n,) is on first.
+
+        Where a joint does not matter, in a singularity, it stays as in x0. Without a closed form there are none.
+        """
+        out = np.empty((8, self.n))
+        if not len(self.form):
+            return out[:0]
+        return out[: self.kernels.all_branches(self.form, self.paths.wiring, *self.limits.arrays, pose, x0, out)]
+
     def _gains(self, X: NDArray[np.float64]) -> NDArray[np.float32]:
         """Gains (k, n, 6) for the atlas at coordinates X (k, n); zero for a chain with several frames."""
         gains = np.zeros((*X.shape, 6), np.float32)
@@ -189,15 +209,17 @@ class Chain:
             self.kernels.gains_of(*self.paths.arrays, X, gains)
         return gains
 
-    def lane(self, oriented: bool) -> Lane:
-        """The fast lane of a chain with one frame, for targets with or without an orientation."""
-        try:
-            return self._lanes[oriented]
-        except KeyError:
-            self._lanes[oriented] = lane = self._make_lane(oriented)
-            return lane
+    @cached_property
+    def pose_lane(self) -> Lane:
+        """The fast lane of a chain with one frame, for whole poses."""
+        return self._lane(oriented=True)
 
-    def _make_lane(self, oriented: bool) -> Lane:
+    @cached_property
+    def position_lane(self) -> Lane:
+        """The same for positions at any orientation."""
+        return self._lane(oriented=False)
+
+    def _lane(self, oriented: bool) -> Lane:
         joints = [self.model.joints[int(j)] for j in self.coordinates.joints]
         places = np.array([(joint.idx_q, joint.nq == 2) for joint in joints], dtype=np.int64)
         kernels = self.kernels
@@ -207,10 +229,14 @@ class Chain:
             self.atlas.arrays,
             (self._least, self._most, places),
             self.reach(0, oriented).array,
-            closed_form(self.paths),
+            self.form,
         )
         given = block, None if oriented else kernels.POSITION
-        return Lane(partial(kernels.solve_pose.compiled(oriented), *given), partial(kernels.solve_poses, *given))
+        return Lane(
+            partial(kernels.solve_pose.compiled(oriented), *given),
+            partial(kernels.solve_poses, *given),
+            self.sample(LANE, (DEFAULT_SEED, 0)),
+        )
 
     def sample(self, count: int, seed: tuple[int, ...]) -> NDArray[np.float64]:
         """Coordinates (count, n) drawn uniformly from the box; one array for a seed, so not to be written to."""
@@ -228,12 +254,14 @@ class Chain:
             self._reaches[tip, oriented] = reach_of(self.paths, self.limits, tip, oriented)
         return self._reaches[tip, oriented]
 
-    def place(self, data: pin.Data, q: NDArray[np.float64]) -> pin.SE3:
-        """World placement of the first frame at configuration q (nq,), by Pinocchio; ``data`` holds it, so not to keep.
+    def place(self, q: NDArray[np.float64], data: pin.Data | None = None) -> pin.SE3:
+        """World placement of the first frame at configuration q (nq,), by Pinocchio; not to be kept: ``data`` holds it.
 
         Of a model with many limbs only the frame's own is computed, which the frame's Jacobian does.
         """
         model, frame = self.model, self.frame_ids[0]
+        if data is None:
+            data = self._own.data
         if self._many_limbs:
             pin.computeFrameJacobian(model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)
         else:

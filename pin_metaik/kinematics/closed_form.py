@@ -12,14 +12,13 @@ from numpy.typing import NDArray
 
 from pin_metaik.kinematics.paths import Paths, matrix_of
 
-CLOSE = 1e-4  # m or rad: axes this near to each other meet, or are parallel; what that leaves, a descent takes away
-ROWS = 20
+CLOSE = 1e-6  # m or rad: axes this near to each other meet, or are parallel; what that leaves, a descent takes away
 
 Floats = NDArray[np.float64]
 
 
 def closed_form(paths: Paths) -> Floats:
-    """What ``branches`` takes (ROWS, 3), or no rows (0, 3) for an arm of neither kind.
+    """What ``branches`` takes (16, 3), or no rows (0, 3) for an arm of neither kind.
 
     In the configuration where all angles are 0, in the world frame unless said otherwise:
 
@@ -28,13 +27,12 @@ def closed_form(paths: Paths) -> Floats:
       with three axes O4 is O5.
     * 11: from O5 to the tip, 12: axis 6, both in the tip frame; 13 and 14: a direction across axis 6, in the tip frame
       and in the world frame.
-    * 15 and 16: shifts of the coordinates, 17 and 18: their signs (angle = sign x + shift).
-    * 19: how far it is from O1 to O5 along axis 2, and, of three parallel axes, whether axes 2 and 3 point as axis 4
+    * 15: how far it is from O1 to O5 along axis 2, and, of three parallel axes, whether axes 2 and 3 point as axis 4
       does (1) or the other way (-1); else 0.
     """
     none = np.zeros((0, 3))
     single = len(paths.ends) == 2 and len(paths.joints) == 6 and len(set(paths.wiring[:, 0].tolist())) == 6
-    if not single or not (paths.wiring[:, 1] == 1).all() or not (np.abs(paths.joints[:, 12]) == 1.0).all():
+    if not single or not (paths.wiring[:, 1] == 1).all() or not (paths.joints[:, 12:] == [1.0, 0.0]).all():
         return none
     frames = np.empty((7, 4, 4))
     placement = np.eye(4)
@@ -57,8 +55,7 @@ def closed_form(paths: Paths) -> Floats:
     ways = np.diff(points[:5], axis=0)
     to_tip = [position - wrist, axes[5], across] @ rotation  # seen from the tip
     level = axes[1] @ ways.sum(axis=0)
-    shifts, signs = paths.joints[:, 13].reshape(2, 3), paths.joints[:, 12].reshape(2, 3)
-    return np.array([*axes, points[0], *ways, *to_tip, across, *shifts, *signs, [level, *sides]])
+    return np.array([*axes, points[0], *ways, *to_tip, across, [level, *sides]])
 
 
 def _parallel(a: Floats, b: Floats) -> bool:

@@ -72,13 +72,13 @@ def evaluate(arm: Arm, tasks: Floats, rows: Ints, x: Floats, work: Work) -> tupl
 @inline
 def evaluate_pose(arm: Arm, task: Floats, x: Floats, work: Work) -> tuple[float, bool]:
     """The same for one tip's whole pose without slack: what almost everybody asks for, at half the time."""
-    joints, wiring, _, tips = arm
+    joints, wiring, ends, tips = arm
     axes, origins, pose, error, _, _, r, J, _, _, _, _, _ = work
-    forward(joints, wiring, 0, joints.shape[0], tips[0], task[:12], x, axes, origins, pose)
+    forward(joints, wiring, ends[0], ends[1], tips[0], task[:12], x, axes, origins, pose)
     pose_error(pose, error)
     position, orientation = residual(task, error, r)
     J[:, :] = 0.0
-    jacobian(joints, wiring, 0, joints.shape[0], task, pose, axes, origins, error, False, J)
+    jacobian(joints, wiring, ends[0], ends[1], task, pose, axes, origins, error, False, J)
     square = 0.0
     for j in range(6):
         square += r[j] * r[j]

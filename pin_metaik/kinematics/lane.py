@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, allocating, inline, jit
-from pin_metaik.kinematics.branches import ORIGIN, Numbers, Vector, start_on_branch
+from pin_metaik.kinematics.branches import ORIGIN, Numbers, Vector, first_branch, numbers_of
 from pin_metaik.kinematics.descent import EXACT, Arm, Work, descend_from, workspace
 from pin_metaik.kinematics.guesses import Looks, lookup_space
 from pin_metaik.kinematics.kernels import forward, pose_error
@@ -39,14 +39,6 @@ def is_pose(M: Floats) -> bool:
             d, e = (c + 1) % 3, (c + 2) % 3
             sound = sound and abs(M[j, d] * M[k, e] - M[j, e] * M[k, d] - M[i, c]) <= ORTHONORMAL
     return sound
-
-
-@inline
-def numbers_of(M: Floats) -> Numbers:
-    """A pose (4, 4) as twelve numbers: rotation row by row, then translation."""
-    return (
-        M[0, 0], M[0, 1], M[0, 2], M[1, 0], M[1, 1], M[1, 2], M[2, 0], M[2, 1], M[2, 2], M[0, 3], M[1, 3], M[2, 3],
-    )  # fmt: skip
 
 
 @inline
@@ -135,10 +127,10 @@ def laid_out(desk: Floats, n: int) -> Desk:
 @inline
 def stands_exactly(arm: Arm, task: Floats, x: Floats, room: Floats, scratch: Floats) -> bool:
     """Whether the tip at x (n,) is on the target but for rounding: there is nothing left to descend."""
-    joints, wiring, _, tips = arm
+    joints, wiring, ends, tips = arm
     S = joints.shape[0]
     pose, error = scratch[:12], scratch[12:]
-    forward(joints, wiring, 0, S, tips[0], task[:12], x, room[:S], room[S:], pose)
+    forward(joints, wiring, ends[0], ends[1], tips[0], task[:12], x, room[:S], room[S:], pose)
     pose_error(pose, error)
     square = 0.0
     for j in range(6):
@@ -159,7 +151,7 @@ def begin(
     write_task(pose, rows is None, settings, task)
     if out_of_reach(task, reach):
         return 0, DONE
-    if rows is not None or form.shape[0] == 0 or not start_on_branch(form, arm[1], bounds, pose, guess, start):
+    if rows is not None or form.shape[0] == 0 or not first_branch(form, arm[1], bounds, pose, guess, start):
         return 0, SEARCH
     for c in range(start.shape[0]):
         best[c] = min(max(start[c], bounds[0][c]), bounds[1][c])

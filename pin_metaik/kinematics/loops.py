@@ -1,5 +1,6 @@
 """The compiled loops under one roof. Importing it takes half a second: ``Chain`` does so when the first one is made."""
 
+from pin_metaik.kinematics.branches import all_branches
 from pin_metaik.kinematics.guesses import gains_of
 from pin_metaik.kinematics.kernels import costs, poses
 from pin_metaik.kinematics.lane import POSITION, distances, solve_pose, solve_poses
@@ -8,6 +9,7 @@ from pin_metaik.kinematics.searches import descend, descend_all, linearize, neig
 
 __all__ = [
     "POSITION",
+    "all_branches",
     "costs",
     "descend",
     "descend_all",
