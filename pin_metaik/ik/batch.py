@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from time import perf_counter
-from typing import cast
+from typing import TypeVar, cast
 
 import numpy as np
 import pinocchio as pin
@@ -25,7 +25,8 @@ from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import LANE, Chain
 from pin_metaik.randomness import Rng
 
-CHUNKS, LEAST, MOST = 4, 16, 256  # parts for each worker, and how many targets are in one
+T = TypeVar("T")
+CHUNKS, LEAST, MOST = 4, 16, 512  # parts for each worker, and how many targets are in one
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,21 +131,44 @@ def solve_ik_batch(
 
     settings = solver.lane if array is not None and len(chain.frames) == 1 else None
     workers = workers or os.cpu_count() or 1
-    with ThreadPoolExecutor(workers) as pool:
-        left: Iterable[int] = range(k)
-        if array is not None and settings is not None:
-            poses, starts = _as_poses(array), drawn(chain, seed, 0, LANE)
-            lane = chain.pose_lane
-            if array.ndim == 2:
-                lane, settings = chain.position_lane, np.array([*settings[:5], math.inf])
+    left: Iterable[int] = range(k)
+    if array is not None and settings is not None:
+        poses, starts = _as_poses(array), drawn(chain, seed, 0, LANE)
+        lane = chain.pose_lane
+        if array.ndim == 2:
+            lane, settings = chain.position_lane, np.array([*settings[:5], math.inf])
 
-            def together(part: slice) -> NDArray[np.int64]:
-                lane.solve_poses(starts, settings, poses[part], batch.q[part], batch.evaluations[part])
-                return _judge(batch, poses[part], settings[4:], part)
+        def together(part: slice) -> None:
+            lane.solve_poses(starts, settings, poses[part], batch.q[part], batch.evaluations[part])
+            _judge(batch, poses[part], settings[4:], part)
 
-            left = np.concatenate([*pool.map(together, _slices(k, workers)), np.empty(0, np.int64)])
-        list(pool.map(alone, map(int, left)))
+        share_out(together, _slices(k, workers), workers)
+        left = np.flatnonzero(~batch.success).tolist()
+    share_out(alone, left, workers)
     return replace(batch, seconds=perf_counter() - began)
+
+
+def share_out(work: Callable[[T], None], parts: Iterable[T], workers: int) -> None:
+    """Do the work for all parts, this thread and others each taking the next part when they are free.
+
+    Others only help: a thread that waited for their results would be woken for each, and each time take the interpreter
+    from them.
+    """
+    waiting = iter(list(parts))  # of a list, threads may take from it without a lock
+
+    def take() -> None:
+        try:
+            for part in waiting:
+                work(part)
+        finally:
+            for _ in waiting:  # if it ended badly, nobody goes on
+                pass
+
+    with ThreadPoolExecutor(max(1, workers - 1)) as pool:
+        helpers = [pool.submit(take) for _ in range(workers - 1)]
+        take()
+    for helper in helpers:
+        helper.result()
 
 
 def _slices(k: int, workers: int) -> list[slice]:
@@ -153,37 +177,20 @@ def _slices(k: int, workers: int) -> list[slice]:
     return [slice(i, min(i + size, k)) for i in range(0, k, size)]
 
 
-def _judge(
-    batch: IKBatch, poses: NDArray[np.float64], tolerances: NDArray[np.float64], part: slice
-) -> NDArray[np.int64]:
-    """Let Pinocchio judge one part of the batch; returns the numbers of what is left to solve."""
+def _judge(batch: IKBatch, poses: NDArray[np.float64], tolerances: NDArray[np.float64], part: slice) -> None:
+    """Let Pinocchio judge one part of the batch."""
     chain, q = batch.chain, batch.q[part]
-    position, orientation = _errors(chain, q, poses).T
+    errors = np.empty((len(q), 2))
+    chain.kernels.distances(poses, chain.places(q), errors)
+    position, orientation = errors.T
     if tolerances[1] == math.inf:
         orientation[:] = 0.0
     batch.position_error[part], batch.orientation_error[part] = position, orientation
-    met = (
-        (batch.evaluations[part] >= 0)
-        & (position <= tolerances[0])
-        & (orientation <= tolerances[1])
-        & (chain.inside(q) == q).all(axis=1)
-    )
+    met = (batch.evaluations[part] >= 0) & (position <= tolerances[0]) & (orientation <= tolerances[1])
     if batch.world is not None:
         met[met] = [not batch.world.checker.collides(one) for one in q[met]]
     batch.success[part] = met
     batch.status[part] = IKStatus.SOLVED
-    left: NDArray[np.int64] = np.arange(part.start, part.stop)[~met]
-    return left
-
-
-def _errors(chain: Chain, q: NDArray[np.float64], poses: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Distance and angle (k, 2) of the chain's frame from poses (k, 4, 4) at configurations q (k, nq), by Pinocchio."""
-    reached, errors = np.empty((len(q), 4, 4)), np.empty((len(q), 2))
-    with chain.lent_data() as data:
-        for i, one in enumerate(q):
-            reached[i] = chain.place(one, data).homogeneous
-    chain.kernels.distances(poses, reached, errors)
-    return errors
 
 
 def _as_array(targets: ArrayLike | Sequence[TargetLike]) -> NDArray[np.float64] | None:

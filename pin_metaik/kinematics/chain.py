@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property, partial
 from threading import local
 from types import ModuleType
@@ -40,11 +39,13 @@ class Lane(NamedTuple):
     """The fast lane of a chain: compiled loops that have been given what they need of it.
 
     Attributes:
+        solve_directly: Takes a target (4, 4) and q (nq,); None without a closed form.
         solve_pose: Takes starts, settings, a target (4, 4) and q (nq,).
         solve_poses: Takes starts, settings, targets (k, 4, 4), q (k, nq) and evaluations (k,).
         starts: (LANE, n) drawn with the default seed.
     """
 
+    solve_directly: Callable[..., Any] | None
     solve_pose: Callable[..., Any]
     solve_poses: Callable[..., Any]
     starts: NDArray[np.float64]
@@ -120,7 +121,7 @@ class Chain:
         self.kernels = _kernels()
         self._own = _Own(model)
         self._samples: dict[tuple[int, tuple[int, ...]], NDArray[np.float64]] = {}
-        self._many_limbs = model.njoints > MANY
+        self._forward = _forward(model, self.frame_ids[0])
         self._spare: list[pin.Data] = []
         self._reaches: dict[tuple[int, bool], Reach] = {}
 
@@ -128,16 +129,6 @@ class Chain:
     def data(self) -> pin.Data:
         """Pinocchio's scratch for this model, one a thread."""
         return self._own.data
-
-    @contextmanager
-    def lent_data(self) -> Iterator[pin.Data]:
-        """The same for a thread that does not live long: making one takes a millisecond for a big model."""
-        try:
-            data = self._spare.pop()
-        except IndexError:
-            data = self.model.createData()
-        yield data
-        self._spare.append(data)
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle by what the chain was made from."""
@@ -220,9 +211,9 @@ class Chain:
         return self._lane(oriented=False)
 
     def _lane(self, oriented: bool) -> Lane:
+        kernels = self.kernels
         joints = [self.model.joints[int(j)] for j in self.coordinates.joints]
         places = np.array([(joint.idx_q, joint.nq == 2) for joint in joints], dtype=np.int64)
-        kernels = self.kernels
         block = kernels.pack(
             self.paths.arrays,
             self.limits.arrays,
@@ -231,10 +222,11 @@ class Chain:
             self.reach(0, oriented).array,
             self.form,
         )
-        given = block, None if oriented else kernels.POSITION
+        rows = None if oriented else kernels.POSITION
         return Lane(
-            partial(kernels.solve_pose.compiled(oriented), *given),
-            partial(kernels.solve_poses, *given),
+            partial(kernels.solve_directly.compiled(), block) if oriented and len(self.form) else None,
+            partial(kernels.solve_pose.compiled(oriented), block, rows),
+            partial(kernels.solve_poses, block, rows),
             self.sample(LANE, (DEFAULT_SEED, 0)),
         )
 
@@ -254,19 +246,29 @@ class Chain:
             self._reaches[tip, oriented] = reach_of(self.paths, self.limits, tip, oriented)
         return self._reaches[tip, oriented]
 
-    def place(self, q: NDArray[np.float64], data: pin.Data | None = None) -> pin.SE3:
-        """World placement of the first frame at configuration q (nq,), by Pinocchio; not to be kept: ``data`` holds it.
+    def place(self, q: NDArray[np.float64]) -> pin.SE3:
+        """World placement of the first frame at q (nq,), by Pinocchio; not to be kept, for it is part of ``data``."""
+        data = self._own.data
+        self._forward(data, q)
+        return pin.updateFramePlacement(self.model, data, self.frame_ids[0])
 
-        Of a model with many limbs only the frame's own is computed, which the frame's Jacobian does.
+    def places(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The same at configurations q (k, nq), as positions and quaternions (k, 7).
+
+        Threads that do not live long take turns with ``pin.Data``, which takes a millisecond to make for a big model. A
+        list of numbers is the quickest way out of Pinocchio.
         """
-        model, frame = self.model, self.frame_ids[0]
-        if data is None:
-            data = self._own.data
-        if self._many_limbs:
-            pin.computeFrameJacobian(model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)
-        else:
-            pin.forwardKinematics(model, data, q)
-        return pin.updateFramePlacement(model, data, frame)
+        forward, update, write = self._forward, pin.updateFramePlacement, pin.SE3ToXYZQUATtuple
+        model, frame, places = self.model, self.frame_ids[0], []
+        try:
+            data = self._spare.pop()
+        except IndexError:
+            data = model.createData()
+        for one in q:
+            forward(data, one)
+            places += write(update(model, data, frame))
+        self._spare.append(data)
+        return np.array(places, dtype=float).reshape(-1, 7)
 
     def placements(self, q: NDArray[np.float64]) -> list[pin.SE3]:
         """World placement of each frame at configuration q (nq,), by Pinocchio."""
@@ -322,6 +324,16 @@ def as_configuration(model: pin.Model, q: ArrayLike) -> NDArray[np.float64]:
     if not math.isfinite(np.add.reduce(configuration)):
         raise InvalidConfiguration(f"a configuration has finite entries, got {configuration}")
     return configuration
+
+
+def _forward(model: pin.Model, frame: int) -> Callable[[pin.Data, NDArray[np.float64]], object]:
+    """Pinocchio's forward kinematics as far as a frame needs it.
+
+    Of a model with many limbs only the frame's own is computed, which the frame's Jacobian does.
+    """
+    if model.njoints <= MANY:
+        return partial(pin.forwardKinematics, model)
+    return lambda data, q: pin.computeFrameJacobian(model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)
 
 
 def _entry_limits(model: pin.Model) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -1,6 +1,7 @@
 """The compiled loops under one roof. Importing it takes half a second: ``Chain`` does so when the first one is made."""
 
 from pin_metaik.kinematics.branches import all_branches
+from pin_metaik.kinematics.direct import solve_directly
 from pin_metaik.kinematics.guesses import gains_of
 from pin_metaik.kinematics.kernels import costs, poses
 from pin_metaik.kinematics.lane import POSITION, distances, solve_pose, solve_poses
@@ -19,6 +20,7 @@ __all__ = [
     "neighbours",
     "pack",
     "poses",
+    "solve_directly",
     "solve_pose",
     "solve_poses",
 ]

@@ -1,6 +1,7 @@
 """Batches: every answer is the one its target gets alone, whatever the number of workers."""
 
 import pickle
+import time
 
 import numpy as np
 import pinocchio as pin
@@ -10,6 +11,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import pin_metaik as mik
 from pin_metaik.collision import load_scene
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting, InvalidTarget
+from pin_metaik.ik.batch import share_out
 from tests.robots_under_test import chain_of
 
 
@@ -44,7 +46,7 @@ def test_the_errors_of_a_batch_are_pinocchios(name: str) -> None:
             offset = pin.SE3(pin.exp3(turn * pin.exp3(rng.normal(size=3))[0]), 1e-6 * rng.normal(size=3))
             goal = chain.placements(one)[0] * offset
             out = np.empty((1, 2))
-            reached = chain.place(one).homogeneous
+            reached = np.array(pin.SE3ToXYZQUATtuple(chain.place(one)))
             chain.kernels.distances(goal.homogeneous[None], reached[None], out)
             # Entries of order 1, of a product of ten rotations, are rounded to 1e-16 each.
             assert_allclose(out[0], [np.linalg.norm(offset.translation), turn], atol=3e-15)
@@ -113,3 +115,22 @@ def test_results_with_a_world_are_pickled() -> None:
     assert again.success and again.verify()
     Q = chain.q(chain.box.sample(np.random.default_rng(0), 200))
     assert_array_equal(again.world.in_collision_batch(Q), world.in_collision_batch(Q))
+
+
+@pytest.mark.parametrize("workers", [1, 2, 4])
+def test_all_parts_are_done_once_and_after_an_error_no_more_are_taken(workers: int) -> None:
+    done: list[int] = []
+    share_out(done.append, range(500), workers)
+    assert sorted(done) == list(range(500))
+
+    def fail(part: int) -> None:
+        time.sleep(1e-4)
+        done.append(part)
+        if part == 20:
+            raise KeyboardInterrupt
+
+    done.clear()
+    with pytest.raises(KeyboardInterrupt):
+        share_out(fail, range(500), workers)
+    assert 20 in done
+    assert len(done) < 100
