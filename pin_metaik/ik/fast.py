@@ -3,10 +3,10 @@
 ``solve_ik`` and ``solve_ik_batch`` both take it. It is the first step of ``IKSolver()``; what that does not solve goes
 on the long way, through targets, problems and ledgers, which cost several times as much Python.
 
-What ur5 takes, 3.3 us in a plain loop: compiled call 1.2, of which it works for 0.5; Pinocchio's placement 0.7; comparing
-it 0.4; the result 0.2; copies of target and start 0.3. What was tried: a ``pin.SE3`` of one's own costs 0.6 to make and a
-relative placement 0.4, two tuples compared by ``math.dist`` 0.1; a frozen dataclass of eleven fields 0.9; a compiled
-loop that takes the chain as fifteen arrays 0.6 more than one that takes it as one.
+What ur5 takes, 3.3 us in a plain loop: compiled call 1.2, of which it works for 0.5; Pinocchio's placement 0.7;
+comparing it 0.4; the result 0.2; copies of target and start 0.3. What was tried: a ``pin.SE3`` of one's own costs 0.6
+to make and a relative placement 0.4, two tuples compared by ``math.dist`` 0.1; a frozen dataclass of eleven fields
+0.9; a compiled loop that takes the chain as fifteen arrays 0.6 more than one that takes it as one.
 """
 
 from __future__ import annotations

@@ -84,6 +84,44 @@ def with_straight_wrist(chain: mik.Chain, x: NDArray[np.float64]) -> NDArray[np.
     return straight
 
 
+def arm_of(axes: NDArray[np.float64], points: NDArray[np.float64], tip: pin.SE3) -> mik.Chain:
+    """An arm with these axes (6, 3) through these points (6, 3) of the world when all angles are 0."""
+    model, parent, before = pin.Model(), 0, np.zeros(3)
+    for i, (axis, point) in enumerate(zip(axes, points, strict=True)):
+        joint = pin.JointModelRevoluteUnaligned(axis)
+        ranges = np.array([-3.0]), np.array([3.0])
+        placement = pin.SE3(np.eye(3), point - before)
+        parent = model.addJoint(parent, joint, placement, f"joint_{i + 1}", np.ones(1), np.ones(1), *ranges)
+        before = point
+    model.addFrame(pin.Frame("tip", parent, 0, tip, pin.FrameType.OP_FRAME))
+    return mik.Chain(model, "tip")
+
+
+@pytest.mark.parametrize("kind", ["three parallel axes", "spherical wrist"])
+def test_any_arm_of_either_kind_is_solved_by_its_branches(kind: str) -> None:
+    """Axes at any angle to each other and with any offsets, parallel ones either way round."""
+    rng = np.random.default_rng(6)
+    for _ in range(20):
+        axes, points = rng.normal(size=(6, 3)), rng.uniform(-0.5, 0.5, (6, 3))
+        axes /= np.linalg.norm(axes, axis=1)[:, None]
+        axes[2] = rng.choice([-1.0, 1.0]) * axes[1]
+        points[5] = points[4] = points[4] + rng.normal() * axes[4]
+        if kind == "three parallel axes":
+            axes[3] = rng.choice([-1.0, 1.0]) * axes[1]
+        else:
+            points[3] = points[4] + rng.normal() * axes[3]
+        chain = arm_of(axes, points, pin.SE3(pin.exp3(rng.normal(size=3)), rng.uniform(-0.3, 0.3, 3)))
+        assert len(chain.form)
+        evaluations = []
+        for x, guess in zip(sampled(chain, 50), sampled(chain, 50, seed=1), strict=True):
+            pose = chain.poses(x)[0, 0]
+            assert_allclose(chain.branches(pose, x)[0], x, atol=1e-6)
+            result = mik.solve_ik(chain, pose, chain.q(guess))
+            assert result.success
+            evaluations.append(result.evaluations)
+        assert np.mean(evaluations) < 2.0
+
+
 def test_limits_leave_branches_out() -> None:
     robot = mik.load_robot("ur5")
     elbow = robot.model.names[3]
