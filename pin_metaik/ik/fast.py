@@ -69,7 +69,7 @@ def solve_fast(
         return None
     if spent < 0:
         return None
-    place = pin.SE3ToXYZQUATtuple(chain.place(q))
+    place = pin.SE3ToXYZQUATtuple(chain.tip.place(q))
     distance, chord = math.dist(place[:3], position), math.dist(place[3:], quaternion)
     if chord > 1.0:  # an orientation has two quaternions
         chord = min(chord, math.dist(place[3:], [-v for v in quaternion]))

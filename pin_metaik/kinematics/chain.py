@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property, partial
-from threading import local
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -19,20 +18,13 @@ from pin_metaik.kinematics.closed_form import closed_form
 from pin_metaik.kinematics.coordinates import Coordinates, consecutive
 from pin_metaik.kinematics.limits import Limits, finite_or_infinite
 from pin_metaik.kinematics.paths import lay_paths, motion_of
+from pin_metaik.kinematics.placing import Placing, Scratch
 from pin_metaik.kinematics.reach import Reach, reach_of
 from pin_metaik.optimize import Box
 from pin_metaik.randomness import DEFAULT_SEED, as_generator
 
 LANE = 256  # random starts of the fast lane
 REMEMBERED = 16  # sets of samples kept
-MANY = 24  # joints from which on a frame's Jacobian takes less time than all placements, whichever limb it is on
-
-
-class _Own(local):
-    """What each thread has of its own."""
-
-    def __init__(self, model: pin.Model) -> None:
-        self.data = model.createData()
 
 
 class Lane(NamedTuple):
@@ -65,6 +57,7 @@ class Chain:
         reference: (nq,) the configuration that joints outside the chain are held at.
         paths: The arrays the compiled loops take.
         kernels: The compiled loops.
+        tip: Pinocchio's placement of the first frame.
     """
 
     def __init__(
@@ -119,10 +112,9 @@ class Chain:
         self._least[entries], self._most[entries] = self.limits.lower[plain], self.limits.upper[plain]
         self.paths = lay_paths(model, self.frame_ids, {j: c for c, j in enumerate(drivers)}, motions, self.reference)
         self.kernels = _kernels()
-        self._own = _Own(model)
+        self._own = Scratch(model)
+        self.tip = Placing(model, self.frame_ids[0], self.reference)
         self._samples: dict[tuple[int, tuple[int, ...]], NDArray[np.float64]] = {}
-        self._forward = _forward(model, self.frame_ids[0])
-        self._spare: list[pin.Data] = []
         self._reaches: dict[tuple[int, bool], Reach] = {}
 
     @property
@@ -246,30 +238,6 @@ class Chain:
             self._reaches[tip, oriented] = reach_of(self.paths, self.limits, tip, oriented)
         return self._reaches[tip, oriented]
 
-    def place(self, q: NDArray[np.float64]) -> pin.SE3:
-        """World placement of the first frame at q (nq,), by Pinocchio; not to be kept, for it is part of ``data``."""
-        data = self._own.data
-        self._forward(data, q)
-        return pin.updateFramePlacement(self.model, data, self.frame_ids[0])
-
-    def places(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The same at configurations q (k, nq), as positions and quaternions (k, 7).
-
-        Threads that do not live long take turns with ``pin.Data``, which takes a millisecond to make for a big model. A
-        list of numbers is the quickest way out of Pinocchio.
-        """
-        forward, update, write = self._forward, pin.updateFramePlacement, pin.SE3ToXYZQUATtuple
-        model, frame, places = self.model, self.frame_ids[0], []
-        try:
-            data = self._spare.pop()
-        except IndexError:
-            data = model.createData()
-        for one in q:
-            forward(data, one)
-            places += write(update(model, data, frame))
-        self._spare.append(data)
-        return np.array(places, dtype=float).reshape(-1, 7)
-
     def placements(self, q: NDArray[np.float64]) -> list[pin.SE3]:
         """World placement of each frame at configuration q (nq,), by Pinocchio."""
         pin.forwardKinematics(self.model, self.data, q)
@@ -324,16 +292,6 @@ def as_configuration(model: pin.Model, q: ArrayLike) -> NDArray[np.float64]:
     if not math.isfinite(np.add.reduce(configuration)):
         raise InvalidConfiguration(f"a configuration has finite entries, got {configuration}")
     return configuration
-
-
-def _forward(model: pin.Model, frame: int) -> Callable[[pin.Data, NDArray[np.float64]], object]:
-    """Pinocchio's forward kinematics as far as a frame needs it.
-
-    Of a model with many limbs only the frame's own is computed, which the frame's Jacobian does.
-    """
-    if model.njoints <= MANY:
-        return partial(pin.forwardKinematics, model)
-    return lambda data, q: pin.computeFrameJacobian(model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)
 
 
 def _entry_limits(model: pin.Model) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
