@@ -22,7 +22,7 @@ from pin_metaik.collision.shapes import Shape
 from pin_metaik.collision.simplify import Simplify, solid_of
 from pin_metaik.collision.srdf import Pair, pair_of, write_srdf
 from pin_metaik.errors import FrameNotFound, InvalidGeometry, InvalidSetting, UnknownName
-from pin_metaik.kinematics.chain import as_configuration
+from pin_metaik.kinematics.model import as_configuration
 
 
 class CollisionWorld:

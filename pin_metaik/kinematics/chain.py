@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property, partial
 from types import ModuleType
@@ -12,11 +11,10 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.errors import FixedFrame, FrameNotFound, InvalidConfiguration, UnknownName
+from pin_metaik.errors import FixedFrame
 from pin_metaik.kinematics.atlas import LEAF, SEED, Atlas, chart
 from pin_metaik.kinematics.closed_form import closed_form
-from pin_metaik.kinematics.coordinates import Coordinates, consecutive
-from pin_metaik.kinematics.limits import Limits, finite_or_infinite
+from pin_metaik.kinematics.model import as_configuration, coordinates_of, entry_limits, frame_id, joint_id, limits_of
 from pin_metaik.kinematics.paths import lay_paths, motion_of
 from pin_metaik.kinematics.placing import Placing, Scratch
 from pin_metaik.kinematics.reach import Reach, reach_of
@@ -89,11 +87,11 @@ class Chain:
         self._made_from = (model, frame, tuple(locked), dict(limits or {}), reference)
         self.model = model
         self.frames = (frame,) if isinstance(frame, str) else tuple(frame)
-        self.frame_ids = tuple(_frame_id(model, name) for name in self.frames)
-        self._least, self._most = _entry_limits(model)
+        self.frame_ids = tuple(frame_id(model, name) for name in self.frames)
+        self._least, self._most = entry_limits(model)
         self.reference = self.configuration(pin.neutral(model) if reference is None else reference)
 
-        held = {_joint_id(model, name) for name in locked}
+        held = {joint_id(model, name) for name in locked}
         on_path = {j for f in self.frame_ids for j in list(model.supports[model.frames[f].parentJoint])[1:]}
         motions = {j: motion_of(model, j) for j in sorted(on_path - held)}
         motions = {j: motion for j, motion in motions.items() if motion.driver not in held}
@@ -105,9 +103,9 @@ class Chain:
                 )
 
         self.names = tuple(model.names[j] for j in drivers)
-        self.coordinates = _coordinates(model, drivers)
+        self.coordinates = coordinates_of(model, drivers)
         mimicked = {motion.driver for motion in motions.values() if motion.scale != 1.0}
-        self.limits = _limits(model, drivers, self.names, mimicked).replace(dict(limits or {}))
+        self.limits = limits_of(model, drivers, self.names, mimicked).replace(dict(limits or {}))
         plain, entries = self.coordinates.plain, self.coordinates.plain_q
         self._least[entries], self._most[entries] = self.limits.lower[plain], self.limits.upper[plain]
         self.paths = lay_paths(model, self.frame_ids, {j: c for c, j in enumerate(drivers)}, motions, self.reference)
@@ -273,70 +271,3 @@ def _kernels() -> ModuleType:
     from pin_metaik.kinematics import loops
 
     return loops
-
-
-def as_configuration(model: pin.Model, q: ArrayLike) -> NDArray[np.float64]:
-    """A configuration (nq,) of the model, checked.
-
-    Raises:
-        InvalidConfiguration: If its length is not nq or an entry is not finite.
-    """
-    try:
-        configuration = np.asarray(q, dtype=float)
-    except (TypeError, ValueError):
-        raise InvalidConfiguration(f"a configuration is {model.nq} numbers, got {q!r}") from None
-    if configuration.shape != (model.nq,):
-        raise InvalidConfiguration(
-            f"a configuration of {model.name!r} has shape ({model.nq},), got {configuration.shape}"
-        )
-    if not math.isfinite(np.add.reduce(configuration)):
-        raise InvalidConfiguration(f"a configuration has finite entries, got {configuration}")
-    return configuration
-
-
-def _entry_limits(model: pin.Model) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Limits (nq,) of the entries of q that are a joint's coordinate; pairs and quaternions have none."""
-    least, most = np.full(model.nq, -np.inf), np.full(model.nq, np.inf)
-    for joint in list(model.joints)[1:]:
-        if joint.nq == 1:
-            least[joint.idx_q] = model.lowerPositionLimit[joint.idx_q]
-            most[joint.idx_q] = model.upperPositionLimit[joint.idx_q]
-    return least, most
-
-
-def _frame_id(model: pin.Model, name: str) -> int:
-    """Id of a frame; of a joint and a link of the same name, the link."""
-    ids = [i for i, frame in enumerate(model.frames) if frame.name == name]
-    if not ids:
-        raise FrameNotFound(str(name), {frame.name for frame in model.frames} - {"universe"})
-    return next((i for i in ids if model.frames[i].type == pin.FrameType.BODY), ids[0])
-
-
-def _joint_id(model: pin.Model, name: str) -> int:
-    if not model.existJointName(name):
-        raise UnknownName("joint", str(name), list(model.names)[1:])
-    return int(model.getJointId(name))
-
-
-def _coordinates(model: pin.Model, drivers: list[int]) -> Coordinates:
-    columns = np.arange(len(drivers))
-    entry = np.array([model.joints[j].idx_q for j in drivers], dtype=np.int64)
-    circular = np.array([model.joints[j].nq == 2 for j in drivers], dtype=bool)
-    return Coordinates(
-        np.array(drivers, dtype=np.int64),
-        consecutive(columns[~circular]),
-        consecutive(entry[~circular]),
-        columns[circular],
-        entry[circular],
-    )
-
-
-def _limits(model: pin.Model, drivers: list[int], names: tuple[str, ...], mimicked: set[int]) -> Limits:
-    lower = finite_or_infinite([model.lowerPositionLimit[model.joints[j].idx_q] for j in drivers])
-    upper = finite_or_infinite([model.upperPositionLimit[model.joints[j].idx_q] for j in drivers])
-    velocity = finite_or_infinite([model.upperVelocityLimit[model.joints[j].idx_v] for j in drivers])
-    turns = np.array([motion_of(model, j).rotates for j in drivers])
-    pair = np.array([model.joints[j].nq == 2 for j in drivers])
-    lower[pair], upper[pair] = -np.inf, np.inf
-    winds = turns & (upper - lower >= 2.0 * np.pi) & [j not in mimicked for j in drivers]
-    return Limits(lower, upper, velocity, turns, winds, names)
