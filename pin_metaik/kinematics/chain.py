@@ -111,7 +111,7 @@ class Chain:
         self.paths = lay_paths(model, self.frame_ids, {j: c for c, j in enumerate(drivers)}, motions, self.reference)
         self.kernels = _kernels()
         self._own = Scratch(model)
-        self.tip = Placing(model, self.frame_ids[0], self.reference)
+        self.tip = Placing(model, self.frame_ids[0])
         self._samples: dict[tuple[int, tuple[int, ...]], NDArray[np.float64]] = {}
         self._reaches: dict[tuple[int, bool], Reach] = {}
 
