@@ -23,8 +23,8 @@ class Placing:
     """World placements of one frame, by Pinocchio.
 
     They are those of a model of one limb, with the joints on the way to the frame and no other frame: then
-    ``pin.framesForwardKinematics`` has nothing else to do. It takes 0.3 us; to have the joints placed and then the frame
-    takes 0.5 on an arm and 1 on a humanoid.
+    ``pin.framesForwardKinematics`` has nothing else to do. That takes 0.3 us; to have the joints placed and then the
+    frame takes 0.5 on an arm and 1 on a humanoid.
 
     Attributes:
         limb: That model.
