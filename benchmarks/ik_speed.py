@@ -42,7 +42,7 @@ LOADING = 300.0  # s, compiling included
 GRACE = 60.0  # s for a block, beyond ten times what the limit of time allows
 WARM_UP = 5  # targets solved before anything is measured: tables and compiled code are made
 WARM_UP_SEED = 2**31
-ROUNDS = 7  # of the batch with each number of workers
+ROUNDS = 15  # of the batch with each number of workers
 
 
 class SolverFailed(Exception):

@@ -62,7 +62,7 @@ def solve_fast(
         q = given.copy() if isinstance(given, np.ndarray) else np.array(given, dtype=float)
         met, spent = False, 1
         if lane.solve_directly is not None:
-            met, position, quaternion = lane.solve_directly(matrix, q)
+            met, position, quaternion = lane.solve_directly(lane.block, matrix, q)
         if not met:
             spent, position, quaternion = lane.solve_pose(starts, settings, matrix, q)
     except (TypeError, ValueError):  # whatever it is, the long way takes it or says what is wrong

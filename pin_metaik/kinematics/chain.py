@@ -26,15 +26,17 @@ REMEMBERED = 16  # sets of samples kept
 
 
 class Lane(NamedTuple):
-    """The fast lane of a chain: compiled loops that have been given what they need of it.
+    """The fast lane of a chain: compiled loops, and what they need of it.
 
     Attributes:
-        solve_directly: Takes a target (4, 4) and q (nq,); None without a closed form.
+        block: The chain as ``pack`` has it.
+        solve_directly: Takes the block, a target (4, 4) and q (nq,); None without a closed form.
         solve_pose: Takes starts, settings, a target (4, 4) and q (nq,).
         solve_poses: Takes starts, settings, targets (k, 4, 4), q (k, nq) and evaluations (k,).
         starts: (LANE, n) drawn with the default seed.
     """
 
+    block: NDArray[np.float64]
     solve_directly: Callable[..., Any] | None
     solve_pose: Callable[..., Any]
     solve_poses: Callable[..., Any]
@@ -214,7 +216,8 @@ class Chain:
         )
         rows = None if oriented else kernels.POSITION
         return Lane(
-            partial(kernels.solve_directly.compiled(), block) if oriented and len(self.form) else None,
+            block,
+            kernels.solve_directly.compiled() if oriented and len(self.form) else None,
             partial(kernels.solve_pose.compiled(oriented), block, rows),
             partial(kernels.solve_poses, block, rows),
             self.sample(LANE, (DEFAULT_SEED, 0)),
