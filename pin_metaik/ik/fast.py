@@ -38,11 +38,11 @@ def solve_fast(
     if settings is None or len(chain.frames) > 1:
         return None
     near = aligned = DEFAULT_TOLERANCE
-    asked: Target | NDArray[np.float64]
+    asked: Target | None = None
     if isinstance(target, np.ndarray) and target.dtype.char == "d" and target.ndim == 2:
-        asked = matrix = target.copy()
+        matrix = target
     elif isinstance(target, pin.SE3):
-        asked = matrix = target.homogeneous
+        matrix = target.homogeneous
     elif isinstance(target, Target):
         if not target.plain:
             return None
@@ -53,7 +53,7 @@ def solve_fast(
         converted = as_matrix(target)
         if converted is None:
             return None
-        asked = matrix = converted
+        matrix = converted
     oriented = aligned < math.inf
     lane = chain.pose_lane if oriented else chain.position_lane
     starts = lane.starts if rng is None else drawn(chain, rng, 0, LANE)
@@ -76,7 +76,8 @@ def solve_fast(
     angle = 4.0 * math.asin(0.5 * chord) if oriented else 0.0  # of small angles exact, unlike a cosine
     if distance > near or angle > aligned:
         return Refinement(chain.x(q), False, spent)
-    return IKResult(q, SOLVED, distance, angle, spent, perf_counter() - began, chain, asked)
+    parts = (position, quaternion) if asked is None else None
+    return IKResult(q, SOLVED, distance, angle, spent, perf_counter() - began, chain, asked, None, None, (), parts)
 
 
 def as_matrix(target: object) -> NDArray[np.float64] | None:

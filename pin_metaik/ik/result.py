@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import TypeAlias, cast
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import NDArray
 
 from pin_metaik.collision import CollisionWorld, Contact
@@ -14,6 +16,8 @@ from pin_metaik.dexterity import rank
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
+
+Parts: TypeAlias = tuple[tuple[float, float, float], tuple[float, float, float, float]]
 
 AT_LIMIT = 1e-9  # rad or m
 
@@ -44,11 +48,12 @@ class IKResult:
         orientation_error: Angle to the target in rad, by Pinocchio; the worst frame's; 0 when orientation is free.
         evaluations: Forward kinematics computed, one a configuration.
         seconds: Time taken, s.
-        chain: The chain that was asked for ...
-        target: ... what.
+        chain: The chain.
+        given: The target as it was given, or ``None``: see ``target``.
         trace: (g, 2) evaluations and best cost after each generation of the seeder, when asked for.
         world: The world it must not collide in, if one was given.
         contacts: What collides at ``q``, the deepest first, when the status is ``IN_COLLISION``.
+        parts: Position and quaternion of a target that is a pose, in the place of a copy of it.
     """
 
     q: NDArray[np.float64]
@@ -58,10 +63,18 @@ class IKResult:
     evaluations: int
     seconds: float
     chain: Chain = field(repr=False)
-    target: TargetLike | Sequence[TargetLike] = field(repr=False)
+    given: TargetLike | Sequence[TargetLike] | None = field(repr=False)
     trace: NDArray[np.float64] | None = field(default=None, repr=False)
     world: CollisionWorld | None = field(default=None, repr=False)
     contacts: tuple[Contact, ...] = ()
+    parts: Parts | None = field(default=None, repr=False)
+
+    @property
+    def target(self) -> TargetLike | Sequence[TargetLike]:
+        """What was asked: a pose as a ``pin.SE3``, anything else as it was given."""
+        if self.parts is None:
+            return cast(TargetLike, self.given)
+        return cast(pin.SE3, pin.XYZQUATToSE3(self.parts[0] + self.parts[1]))
 
     @property
     def problem(self) -> IKProblem:

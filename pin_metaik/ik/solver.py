@@ -119,7 +119,7 @@ class IKSolver:
             evaluations=ledger.spent,
             seconds=perf_counter() - began,
             chain=chain,
-            target=problem.targets,
+            given=problem.targets,
             trace=np.concatenate(ledger.traces) if ledger.traces else None,
             world=problem.world,
             contacts=problem.world.checker.contacts(q) if verdict.collides and problem.world else (),

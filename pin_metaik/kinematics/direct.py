@@ -149,7 +149,10 @@ def directly(block: Floats, target: Floats, q: Floats, desk: Desk) -> bool:
     return take_branch(arm, bounds, entries, form, pose, desk, q)[1] == DONE
 
 
-@jit("Tuple((b1, UniTuple(f8, 3), UniTuple(f8, 4)))(f8[::1], f8[:,:], f8[::1])")
+POSE = "Array(f8, 2, 'A', readonly=True)"  # (4, 4), however it lies in memory; read only
+
+
+@jit(f"Tuple((b1, UniTuple(f8, 3), UniTuple(f8, 4)))(f8[::1], {POSE}, f8[::1])")
 def solve_directly(block: Floats, target: Floats, q: Floats) -> tuple[bool, Vector, Quaternion]:
     """One evaluation of ``lane.solve_pose`` for an arm with a closed form, in less than its time to be called.
 

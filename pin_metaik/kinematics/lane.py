@@ -13,6 +13,7 @@ from pin_metaik.kinematics.direct import (
     DESCEND,
     DONE,
     NOWHERE,
+    POSE,
     REFUSED,
     SEARCH,
     Desk,
@@ -99,7 +100,7 @@ def go_on(
 HOW = "f8[::1], i8[:,::1]?, f8[:,::1], f8[::1]"  # block, rows, starts, settings
 
 
-@jit(f"Tuple((i8, UniTuple(f8, 3), UniTuple(f8, 4)))({HOW}, f8[:,:], f8[::1])")
+@jit(f"Tuple((i8, UniTuple(f8, 3), UniTuple(f8, 4)))({HOW}, {POSE}, f8[::1])")
 def solve_pose(
     block: Floats, rows: Ints | None, starts: Floats, settings: Floats, target: Floats, q: Floats
 ) -> tuple[int, Vector, Quaternion]:

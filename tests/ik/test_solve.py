@@ -243,8 +243,12 @@ def test_a_pose_may_come_as_any_array_of_numbers() -> None:
         pose.astype(object),
         np.stack([pose, pose], -1)[..., 0],
     ):
-        # Arrays take the fast lane, others the long way round, which rounds a pose once more.
-        assert_allclose(mik.solve_ik(chain, same).q, mik.solve_ik(chain, pose).q, atol=1e-12)
+        assert_array_equal(mik.solve_ik(chain, same).q, mik.solve_ik(chain, pose).q)
+    changed = pose.copy()
+    result = mik.solve_ik(chain, changed)
+    changed[0, 3] += 1.0
+    assert_allclose(result.target.homogeneous, pose, atol=1e-15)
+    assert result.verify()
     assert mik.solve_ik(chain, pose.astype(np.float32)).success
     with pytest.raises(InvalidConfiguration, match="6 numbers, got 'home'"):
         mik.solve_ik(chain, pose, "home")
