@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
-from typing import TypeVar, cast
+from typing import cast
 
 import numpy as np
 import pinocchio as pin
@@ -18,15 +17,13 @@ from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.ik.problem import check_world
 from pin_metaik.ik.result import IKResult, IKStatus
+from pin_metaik.ik.sharing import share_out, slices
 from pin_metaik.ik.solve import solve_ik
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
 from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import LANE, Chain
 from pin_metaik.randomness import Rng
-
-T = TypeVar("T")
-LEAST, MOST = 128, 256  # targets that a worker takes at a time; the compiled loop takes 0.1 to 1 ms for them
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,43 +139,10 @@ def solve_ik_batch(
             lane.solve_poses(starts, settings, poses[part], batch.q[part], batch.evaluations[part])
             _judge(batch, poses[part], settings[4:], part)
 
-        share_out(together, _slices(k, workers), workers)
+        share_out(together, slices(k, workers), workers)
         left = np.flatnonzero(~batch.success).tolist()
     share_out(alone, left, workers)
     return replace(batch, seconds=perf_counter() - began)
-
-
-def share_out(work: Callable[[T], None], parts: Iterable[T], workers: int) -> None:
-    """Do the work for all parts, this thread and others each taking the next part when they are free.
-
-    Others only help: a thread that waited for their results would be woken for each, and each time take the interpreter
-    from them.
-    """
-    waiting = iter(list(parts))  # of a list, threads may take from it without a lock
-
-    def take() -> None:
-        try:
-            for part in waiting:
-                work(part)
-        finally:
-            for _ in waiting:  # if it ended badly, nobody goes on
-                pass
-
-    with ThreadPoolExecutor(max(1, workers - 1)) as pool:
-        helpers = [pool.submit(take) for _ in range(workers - 1)]
-        take()
-    for helper in helpers:
-        helper.result()
-
-
-def _slices(k: int, workers: int) -> list[slice]:
-    """Parts of k targets: large, because threads that meet wait; in the end small, so that all end together."""
-    parts, at = [], 0
-    while at < k:
-        size = min(max((k - at) // (2 * workers), LEAST), MOST)
-        parts.append(slice(at, min(at + size, k)))
-        at += size
-    return parts
 
 
 def _judge(batch: IKBatch, poses: NDArray[np.float64], tolerances: NDArray[np.float64], part: slice) -> None:

@@ -32,8 +32,9 @@ def solve_ik(
         chain: The joints to move and the frames to place.
         target: World pose of the chain's frame (``pin.SE3`` or 4x4), a position (3,) in m, a ``Target``, or one
             ``Target`` for each frame of a chain that has several.
-        q0: (nq,) configuration to start from; joints outside the chain stay as they are in it. Default: the chain's
-            reference.
+        q0: (nq,) configuration to start from; joints outside the chain stay as they are in it. An arm with a closed
+            form stays on the branch that it is on (shoulder, elbow and wrist), if that has a solution. Default: the
+            chain's reference.
         solver: How to search; default ``IKSolver()``.
         world: What must not collide: the robot with itself, with what it holds, and with obstacles. Where the
             solver's solution does, others are searched for, by damped least squares whatever its refiner, then by

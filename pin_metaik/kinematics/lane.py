@@ -9,13 +9,9 @@ import numpy as np
 from pin_metaik.compiled import Floats, Ints, inline, jit
 from pin_metaik.kinematics.branches import ORIGIN, Vector, numbers_of
 from pin_metaik.kinematics.descent import Work, descend_from, workspace
-from pin_metaik.kinematics.direct import (
-    DESCEND,
-    DONE,
+from pin_metaik.kinematics.desk import (
     NOWHERE,
     POSE,
-    REFUSED,
-    SEARCH,
     Desk,
     Quaternion,
     desk_for,
@@ -23,10 +19,10 @@ from pin_metaik.kinematics.direct import (
     laid_out,
     quaternion,
     read_start,
-    take_branch,
     write_end,
     write_world,
 )
+from pin_metaik.kinematics.direct import DESCEND, DONE, REFUSED, SEARCH, take_branch
 from pin_metaik.kinematics.guesses import Looks, lookup_space
 from pin_metaik.kinematics.packing import sizes_of, unpack, unpack_atlas
 from pin_metaik.kinematics.reach import ROUNDING

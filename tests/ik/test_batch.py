@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import pin_metaik as mik
 from pin_metaik.collision import load_scene
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting, InvalidTarget
-from pin_metaik.ik.batch import share_out
+from pin_metaik.ik.sharing import share_out
 from tests.robots_under_test import chain_of
 
 
