@@ -38,7 +38,7 @@ def solve_fast(
     if settings is None or len(chain.frames) > 1:
         return None
     near = aligned = DEFAULT_TOLERANCE
-    asked: Target | None = None
+    asked: Target | NDArray[np.float64] | None = None
     if isinstance(target, np.ndarray) and target.dtype.char == "d" and target.ndim == 2:
         matrix = target
     elif isinstance(target, pin.SE3):
@@ -50,10 +50,15 @@ def solve_fast(
         near, aligned = target.allowance
         settings = np.array([*settings[:4], near, aligned])
     else:
-        converted = as_matrix(target)
-        if converted is None:
+        numbers = as_numbers(target)
+        if numbers.shape == (4, 4):
+            matrix = numbers
+        elif numbers.shape == (3,):
+            asked, matrix, aligned = numbers, np.eye(4), math.inf
+            matrix[:3, 3] = numbers
+            settings = np.array([*settings[:5], aligned])
+        else:
             return None
-        matrix = converted
     oriented = aligned < math.inf
     lane = chain.pose_lane if oriented else chain.position_lane
     starts = lane.starts if rng is None else drawn(chain, rng, 0, LANE)
@@ -80,10 +85,9 @@ def solve_fast(
     return IKResult(q, SOLVED, distance, angle, spent, perf_counter() - began, chain, asked, None, None, (), parts)
 
 
-def as_matrix(target: object) -> NDArray[np.float64] | None:
-    """Lists, or an array of other numbers, as a matrix (4, 4), if they can be one."""
+def as_numbers(target: object) -> NDArray[np.float64]:
+    """Lists or an array of any numbers as an array; an empty one, if they are none."""
     try:
-        matrix = np.array(target, dtype=float)
+        return np.array(target, dtype=float)
     except (TypeError, ValueError):
-        return None
-    return matrix if matrix.shape == (4, 4) else None
+        return np.empty(0)

@@ -57,6 +57,9 @@ def test_positions_and_lists_of_targets_are_batches_too() -> None:
     poses = chain.poses(chain.box.sample(np.random.default_rng(0), 20))[:, 0]
     positions = mik.solve_ik_batch(chain, poses[:, :3, 3])
     assert positions.success.all()
+    for pose, found in zip(poses, positions.q, strict=True):
+        for same in (pose[:3, 3], pose[:3, 3].tolist(), mik.Target.at(pose[:3, 3])):
+            assert_array_equal(mik.solve_ik(chain, same).q, found)
     assert (positions.orientation_error == 0.0).all()
     mixed = mik.solve_ik_batch(chain, [pin.SE3(pose) for pose in poses[:5]] + [mik.Target.at(poses[6, :3, 3])])
     assert mixed.success.all()
