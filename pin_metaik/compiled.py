@@ -24,7 +24,7 @@ OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
 LOOSE = {"contract", "reassoc", "nsz", "arcp"}
 
 WAIT = 3.0  # s; reading machine code from the cache takes a tenth of it
-NOTICE = "pin_metaik: compiling an inner loop for this machine, once; this takes some ten seconds ..."
+NOTICE = "pin_metaik: compiling an inner loop for this machine, once; this takes ten to twenty seconds ..."
 
 
 def jit(signature: str) -> Callable[[F], F]:
