@@ -136,7 +136,9 @@ def solve_ik_batch(
             lane, settings = chain.position_lane, np.array([*settings[:5], math.inf])
 
         def together(part: slice) -> None:
-            lane.solve_poses(starts, settings, poses[part], batch.q[part], batch.evaluations[part])
+            chain.kernels.solve_poses(
+                lane.block, lane.rows, starts, settings, poses[part], batch.q[part], batch.evaluations[part]
+            )
             _judge(batch, poses[part], settings[4:], part)
 
         share_out(together, slices(k, workers), workers)

@@ -3,10 +3,9 @@
 ``solve_ik`` and ``solve_ik_batch`` both take it. It is the first step of ``IKSolver()``; what that does not solve goes
 on the long way, through targets, problems and ledgers, which cost several times as much Python.
 
-What ur5 takes, 3.3 us in a plain loop: compiled call 1.2, of which it works for 0.5; Pinocchio's placement 0.7;
-comparing it 0.4; the result 0.2; copies of target and start 0.3. What was tried: a ``pin.SE3`` of one's own costs 0.6
-to make and a relative placement 0.4, two tuples compared by ``math.dist`` 0.1; a frozen dataclass of eleven fields
-0.9; a compiled loop that takes the chain as fifteen arrays 0.6 more than one that takes it as one.
+What ur5 takes, 3.0 us in a plain loop: compiled call 1.1, of which it works for 0.5; Pinocchio's placement 0.6;
+comparing it 0.4; the result 0.2; a copy of the start 0.1 to 0.2. What was tried: a ``pin.SE3`` of one's own costs 0.6
+to make and a relative placement 0.4, two tuples compared by ``math.dist`` 0.1; a frozen dataclass of eleven fields 0.9.
 """
 
 from __future__ import annotations
@@ -48,7 +47,6 @@ def solve_fast(
             return None
         asked, matrix = target, target.pose.homogeneous
         near, aligned = target.allowance
-        settings = np.array([*settings[:4], near, aligned])
     else:
         numbers = as_numbers(target)
         if numbers.shape == (4, 4):
@@ -56,9 +54,10 @@ def solve_fast(
         elif numbers.shape == (3,):
             asked, matrix, aligned = numbers, np.eye(4), math.inf
             matrix[:3, 3] = numbers
-            settings = np.array([*settings[:5], aligned])
         else:
             return None
+    if asked is not None:
+        settings = np.array([*settings[:4], near, aligned])
     oriented = aligned < math.inf
     lane = chain.pose_lane if oriented else chain.position_lane
     starts = lane.starts if rng is None else drawn(chain, rng, 0, LANE)
@@ -69,7 +68,7 @@ def solve_fast(
         if lane.solve_directly is not None:
             met, position, quaternion = lane.solve_directly(lane.block, matrix, q)
         if not met:
-            spent, position, quaternion = lane.solve_pose(starts, settings, matrix, q)
+            spent, position, quaternion = lane.solve_pose(lane.block, lane.rows, starts, settings, matrix, q)
     except (TypeError, ValueError):  # whatever it is, the long way takes it or says what is wrong
         return None
     if spent < 0:

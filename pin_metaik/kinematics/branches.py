@@ -16,17 +16,14 @@ from __future__ import annotations
 import math
 from typing import TypeAlias
 
-import numpy as np
-
 from pin_metaik.compiled import Floats, Ints, inline, jit
 from pin_metaik.kinematics.descent import Bounds
-from pin_metaik.kinematics.kernels import cos_sin
+from pin_metaik.kinematics.kernels import cos_sin, nearest_turn
 
 Vector: TypeAlias = tuple[float, float, float]
 Turn: TypeAlias = tuple[float, float]  # cosine and sine
 Numbers: TypeAlias = tuple[float, ...]
 ORIGIN = 0.0, 0.0, 0.0
-TURN = 2.0 * np.pi
 LOST = 1e-9  # m or m^2: lever below which an angle is rounding, and may be anything
 SHORT = 1e-5  # of the squared lever that may be missing: an arm is built to nine digits, and stretched
 OUTSIDE = 1e-9  # rad that rounding may take a solution beyond a limit
@@ -183,11 +180,9 @@ def on_branch(form: Floats, wiring: Ints, bounds: Bounds, pose: Numbers, guess: 
     angles, inside = branch(form, pose, (x[0], x[1], x[2], x[3], x[4], x[5]), number)
     for s in range(6):
         c = wiring[s, 0]
-        away = angles[s] - guess[c]
-        there = guess[c] + away - TURN * np.round(away / TURN)
-        there += TURN if there < lower[c] - OUTSIDE else (-TURN if there > upper[c] + OUTSIDE else 0.0)
-        inside = inside and lower[c] - OUTSIDE <= there <= upper[c] + OUTSIDE
-        x[c] = there
+        least, most = lower[c] - OUTSIDE, upper[c] + OUTSIDE
+        x[c] = nearest_turn(angles[s], guess[c], least, most)
+        inside = inside and least <= x[c] <= most
     return inside
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from functools import cached_property, partial
+from functools import cached_property
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -30,17 +30,17 @@ class Lane(NamedTuple):
 
     Attributes:
         block: The chain as ``pack`` has it.
-        solve_directly: Takes the block, a target (4, 4) and q (nq,); None without a closed form.
-        solve_pose: Takes starts, settings, a target (4, 4) and q (nq,).
-        solve_poses: Takes starts, settings, targets (k, 4, 4), q (k, nq) and evaluations (k,).
+        rows: ``POSITION``, or None for whole poses.
         starts: (LANE, n) drawn with the default seed.
+        solve_directly: Of ``direct``; None without a closed form.
+        solve_pose: Of ``lane``.
     """
 
     block: NDArray[np.float64]
+    rows: NDArray[np.int64] | None
+    starts: NDArray[np.float64]
     solve_directly: Callable[..., Any] | None
     solve_pose: Callable[..., Any]
-    solve_poses: Callable[..., Any]
-    starts: NDArray[np.float64]
 
 
 class Chain:
@@ -214,13 +214,12 @@ class Chain:
             self.reach(0, oriented).array,
             self.form,
         )
-        rows = None if oriented else kernels.POSITION
         return Lane(
             block,
-            kernels.solve_directly.compiled() if oriented and len(self.form) else None,
-            partial(kernels.solve_pose.compiled(oriented), block, rows),
-            partial(kernels.solve_poses, block, rows),
+            None if oriented else kernels.POSITION,
             self.sample(LANE, (DEFAULT_SEED, 0)),
+            kernels.solve_directly.compiled() if oriented and len(self.form) else None,
+            kernels.solve_pose.compiled(oriented),
         )
 
     def sample(self, count: int, seed: tuple[int, ...]) -> NDArray[np.float64]:

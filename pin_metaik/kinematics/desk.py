@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from pin_metaik.compiled import Floats, allocating, inline
-from pin_metaik.kinematics.branches import Numbers
+from pin_metaik.kinematics.branches import ORIGIN, Numbers, Vector, numbers_of
 from pin_metaik.kinematics.packing import Entries
 from pin_metaik.kinematics.pose import ORTHONORMAL
 
@@ -16,7 +16,7 @@ Quaternion: TypeAlias = tuple[float, float, float, float]
 Desk: TypeAlias = tuple[Floats, Floats]
 
 POSE = "Array(f8, 2, 'A', readonly=True)"  # (4, 4), however it lies in memory; read only
-NOWHERE = 0.0, 0.0, 0.0, 1.0
+NOWHERE = ORIGIN, (0.0, 0.0, 0.0, 1.0)
 
 
 @inline
@@ -52,6 +52,13 @@ def quaternion(pose: Numbers) -> Quaternion:
 
 
 @inline
+def parts_of(target: Floats) -> tuple[Vector, Quaternion]:
+    """Position and quaternion of a target (4, 4)."""
+    pose = numbers_of(target)
+    return (pose[9], pose[10], pose[11]), quaternion(pose)
+
+
+@inline
 def write_world(pose: Numbers, task: Floats) -> None:
     """Write the world as seen from the target into a task."""
     for i in range(3):
@@ -76,6 +83,15 @@ def read_start(q: Floats, entries: Entries, guess: Floats) -> bool:
         e = places[c, 0]
         guess[c] = math.atan2(q[e + 1], q[e]) if places[c, 1] == 1 else q[e]
     return sound
+
+
+@inline
+def read(target: Floats, q: Floats, entries: Entries, task: Floats, guess: Floats) -> bool:
+    """Write the target's world and the start's coordinates; whether they are a pose and a configuration."""
+    if not is_pose(target) or not read_start(q, entries, guess):
+        return False
+    write_world(numbers_of(target), task)
+    return True
 
 
 @inline

@@ -3,21 +3,9 @@
 from __future__ import annotations
 
 from pin_metaik.compiled import Floats, inline, jit
-from pin_metaik.kinematics.branches import ORIGIN, Numbers, Vector, first_branch, numbers_of
+from pin_metaik.kinematics.branches import Vector, first_branch, numbers_of
 from pin_metaik.kinematics.descent import EXACT, Arm, Bounds
-from pin_metaik.kinematics.desk import (
-    NOWHERE,
-    POSE,
-    Desk,
-    Quaternion,
-    desk_for,
-    is_pose,
-    laid_out,
-    quaternion,
-    read_start,
-    write_end,
-    write_world,
-)
+from pin_metaik.kinematics.desk import NOWHERE, POSE, Desk, Quaternion, desk_for, laid_out, parts_of, read, write_end
 from pin_metaik.kinematics.kernels import forward, pose_error
 from pin_metaik.kinematics.packing import Entries, sizes_of, unpack
 
@@ -41,11 +29,11 @@ def stands_exactly(arm: Arm, task: Floats, x: Floats, lines: Floats, room: Float
 
 @inline
 def take_branch(
-    arm: Arm, bounds: Bounds, entries: Entries, form: Floats, pose: Numbers, desk: Desk, q: Floats
+    arm: Arm, bounds: Bounds, entries: Entries, form: Floats, target: Floats, desk: Desk, q: Floats
 ) -> tuple[int, int]:
     """Write the first branch that there is into q, if it is exactly there: evaluations, and what is left to do."""
     task, guess, start, best, room = laid_out(desk, bounds[0].shape[0])
-    if not first_branch(form, arm[1], bounds, pose, guess, start):
+    if not first_branch(form, arm[1], bounds, numbers_of(target), guess, start):
         return 0, SEARCH
     for c in range(start.shape[0]):
         best[c] = min(max(start[c], bounds[0][c]), bounds[1][c])
@@ -60,11 +48,9 @@ def directly(block: Floats, target: Floats, q: Floats, desk: Desk) -> bool:
     """Whether a branch is exactly there, and q written."""
     arm, bounds, entries, _, form = unpack(block)
     task, guess, _, _, _ = laid_out(desk, bounds[0].shape[0])
-    if not is_pose(target) or not read_start(q, entries, guess):
+    if not read(target, q, entries, task, guess):
         return False
-    pose = numbers_of(target)
-    write_world(pose, task)
-    return take_branch(arm, bounds, entries, form, pose, desk, q)[1] == DONE
+    return take_branch(arm, bounds, entries, form, target, desk, q)[1] == DONE
 
 
 @jit(f"Tuple((b1, UniTuple(f8, 3), UniTuple(f8, 4)))(f8[::1], {POSE}, f8[::1])")
@@ -75,7 +61,6 @@ def solve_directly(block: Floats, target: Floats, q: Floats) -> tuple[bool, Vect
     ``solve_pose`` says why.
     """
     S, n = sizes_of(block)
-    if not directly(block, target, q, desk_for(n, S)):
-        return False, ORIGIN, NOWHERE
-    pose = numbers_of(target)
-    return True, (pose[9], pose[10], pose[11]), quaternion(pose)
+    met = directly(block, target, q, desk_for(n, S))
+    position, turn = parts_of(target) if met else NOWHERE
+    return met, position, turn

@@ -27,6 +27,7 @@ import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, Singles, exact, inline, jit, shared
 
+TURN = 2.0 * np.pi
 PATHS = "f8[:,::1], i8[:,::1], i8[::1], f8[:,::1]"  # joints, wiring, ends, tips
 
 
@@ -35,6 +36,14 @@ def copy(source: Floats | Singles, target: Floats) -> None:
     """Copy (n,) numbers; an assignment of slices compiles for two seconds longer, for the message it might raise."""
     for i in range(target.shape[0]):
         target[i] = source[i]
+
+
+@inline
+def nearest_turn(x: float, x0: float, lower: float, upper: float) -> float:
+    """The angle moved by the whole turns that bring it nearest to x0 between the bounds; below them if none does."""
+    turns = np.round((x0 - x) / TURN)
+    turns = min(max(turns, np.ceil((lower - x) / TURN)), np.floor((upper - x) / TURN))
+    return float(x + TURN * turns)
 
 
 @exact

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit
-from pin_metaik.kinematics.branches import ORIGIN, Vector, numbers_of
+from pin_metaik.kinematics.branches import Vector
 from pin_metaik.kinematics.descent import Work, descend_from, workspace
 from pin_metaik.kinematics.desk import (
     NOWHERE,
@@ -15,12 +15,10 @@ from pin_metaik.kinematics.desk import (
     Desk,
     Quaternion,
     desk_for,
-    is_pose,
     laid_out,
-    quaternion,
-    read_start,
+    parts_of,
+    read,
     write_end,
-    write_world,
 )
 from pin_metaik.kinematics.direct import DESCEND, DONE, REFUSED, SEARCH, take_branch
 from pin_metaik.kinematics.guesses import Looks, lookup_space
@@ -51,10 +49,8 @@ def begin(block: Floats, rows: Ints | None, settings: Floats, target: Floats, q:
     """Do for a target what needs no search: returns evaluations, and what is left to do for ``go_on``."""
     arm, bounds, entries, reach, form = unpack(block)
     task, guess, _, _, _ = laid_out(desk, bounds[0].shape[0])
-    if not is_pose(target) or not read_start(q, entries, guess):
+    if not read(target, q, entries, task, guess):
         return REFUSED, DONE
-    pose = numbers_of(target)
-    write_world(pose, task)
     for i in range(6):
         task[12 + i], task[18 + i] = 0.0 if i < 3 or rows is None else np.inf, 1.0
     task[24], task[25] = 0.999 * settings[4], 0.999 * settings[5]
@@ -62,7 +58,7 @@ def begin(block: Floats, rows: Ints | None, settings: Floats, target: Floats, q:
         return 0, DONE
     if rows is not None or form.shape[0] == 0:
         return 0, SEARCH
-    return take_branch(arm, bounds, entries, form, pose, desk, q)
+    return take_branch(arm, bounds, entries, form, target, desk, q)
 
 
 @inline
@@ -104,13 +100,11 @@ def solve_pose(
     S, n = sizes_of(block)
     desk = desk_for(n, S)
     spent, todo = begin(block, rows, settings, target, q, desk)
-    if spent == REFUSED:
-        return REFUSED, ORIGIN, NOWHERE
     if todo != DONE:
         work, looks = workspace(n, rows, S), lookup_space(n, 1)
         spent = go_on(block, rows, starts, settings, q, desk, (spent, todo), work, looks)
-    pose = numbers_of(target)
-    return spent, (pose[9], pose[10], pose[11]), quaternion(pose)
+    position, turn = NOWHERE if spent == REFUSED else parts_of(target)
+    return spent, position, turn
 
 
 @jit(f"void({HOW}, f8[:,:,::1], f8[:,::1], i8[::1])")
@@ -144,11 +138,10 @@ def solve_poses(
 def distances(targets: Floats, reached: Floats, out: Floats) -> None:
     """Distance (m) and angle (rad), out (k, 2), of poses reached (k, 7), as Pinocchio writes them, from (k, 4, 4)."""
     for i in range(targets.shape[0]):
-        pose = numbers_of(targets[i])
-        goal = quaternion(pose)
+        position, goal = parts_of(targets[i])
         square = near = far = 0.0  # far: the other quaternion of the same orientation
         for j in range(3):
-            square += (reached[i, j] - pose[9 + j]) ** 2
+            square += (reached[i, j] - position[j]) ** 2
         for j in range(4):
             near += (reached[i, 3 + j] - goal[j]) ** 2
             far += (reached[i, 3 + j] + goal[j]) ** 2

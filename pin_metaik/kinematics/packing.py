@@ -13,7 +13,7 @@ from pin_metaik.kinematics.guesses import Atlas
 
 Entries: TypeAlias = tuple[Floats, Floats, Ints]
 
-SIZES = 8  # whole numbers at the beginning of a block
+SIZES = 6  # whole numbers at the beginning of a block: five lengths, and where the atlas begins
 
 
 def pack(arm: Arm, bounds: Bounds, atlas: Atlas, entries: Entries, reach: Floats, form: Floats) -> Floats:
@@ -25,10 +25,11 @@ def pack(arm: Arm, bounds: Bounds, atlas: Atlas, entries: Entries, reach: Floats
     """
     (joints, wiring, ends, tips), (lower, upper, winds), (leaves, samples, gains, scale) = arm, bounds, atlas
     least, most, places = entries
-    sizes = [len(joints), len(lower), len(least), len(form), len(leaves), 0, 0, 0]
-    parts = np.array(sizes), joints, tips, lower, upper, least, most, reach, form, wiring, ends, winds, places
-    tables = np.array([scale]), leaves, samples, gains
-    return np.concatenate([part.ravel().view(np.float64) for part in (*parts, *tables)])
+    parts = joints, tips, lower, upper, least, most, reach, form, wiring, ends, winds, places
+    tables = SIZES + sum(part.size for part in parts)
+    sizes = np.array([len(joints), len(lower), len(least), len(form), len(leaves), tables])
+    atlas_parts = np.array([scale]), leaves, samples, gains
+    return np.concatenate([part.ravel().view(np.float64) for part in (sizes, *parts, *atlas_parts)])
 
 
 @inline
@@ -70,9 +71,8 @@ def unpack(block: Floats) -> tuple[Arm, Bounds, Entries, Floats, Floats]:
 def unpack_atlas(block: Floats) -> Atlas:
     """The atlas that ``pack`` took."""
     sizes = block[:SIZES].view(np.int64)
-    S, n, nq, f, L = sizes[0], sizes[1], sizes[2], sizes[3], sizes[4]
+    n, L, scale = sizes[1], sizes[4], sizes[5]
     k = LEAF * (L - 1)
-    scale = SIZES + 14 * S + 12 + 2 * n + 2 * nq + 8 + 3 * f + 2 * S + 2 + 3 * n
     tables = block[scale + 1 :].view(np.float32)
     samples = 9 * LEAF * L
     gains = samples + k * n

@@ -18,9 +18,7 @@ from pin_metaik.kinematics.guesses import (
     suggest,
     target_feature,
 )
-from pin_metaik.kinematics.kernels import PATHS, copy
-
-TURN = 2.0 * np.pi
+from pin_metaik.kinematics.kernels import PATHS, TURN, copy, nearest_turn
 
 
 @jit(f"Tuple((f8, b1))({PATHS}, f8[:,::1], i8[:,::1], f8[::1], f8[::1], f8[:,::1])")
@@ -50,9 +48,7 @@ def unwind(x: Floats, x0: Floats, bounds: Bounds) -> None:
     lower, upper, winds = bounds
     for c in range(x.shape[0]):
         if winds[c] == 1:
-            turns = np.round((x0[c] - x[c]) / TURN)
-            turns = min(max(turns, np.ceil((lower[c] - x[c]) / TURN)), np.floor((upper[c] - x[c]) / TURN))
-            x[c] = min(max(x[c] + TURN * turns, lower[c]), upper[c])
+            x[c] = min(max(nearest_turn(x[c], x0[c], lower[c], upper[c]), lower[c]), upper[c])
 
 
 @shared

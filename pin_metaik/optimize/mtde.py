@@ -71,7 +71,7 @@ class MTDE:
                 a2 = self.a2_initial - (self.a2_initial - self.a2_final) * (1 - t) ** mu  # (24)
                 F = positive_cauchy(rng, mu_f, self.spread, N)[:, None]
                 x_Upop = union.take(below(rng, N + min(archived, N), N), axis=0)
-                r, l, g = producers  # noqa: E741
+                r, l, g = producers  # noqa: E741  the paper's letters
                 v_R = representative(X[r], f[r], F[r], x_Upop[r], a1)
                 v_L = local_random(rng, X[l], F[l], x_Upop[l], a2)
                 v_G = global_history(rng, X[g], F[g], history)

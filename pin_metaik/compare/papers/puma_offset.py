@@ -76,7 +76,7 @@ PRINTED_THETA = (0.19, -0.95, 1.90, 1.28, -1.57, 0.0)  # rad
 PRINTED_TIP = (5.0, 4.99, 10.02)
 
 
-def O(problem: IKProblem, p: float, X: Array) -> Array:  # noqa: E743
+def O(problem: IKProblem, p: float, X: Array) -> Array:  # noqa: E743  the paper's letter
     """O = p d^2 (Eq. 9-10), d the distance of the tip to the goal, for joint angles X (k, 6)."""
     return p * problem.costs(X) ** 2
 

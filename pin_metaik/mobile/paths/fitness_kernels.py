@@ -11,6 +11,14 @@ from pin_metaik.compiled import Floats, Ints, inline, jit
 
 
 @inline
+def corner(via: Floats, v: int, ends: Floats) -> tuple[float, float]:
+    """Via point v of a path (2 n,), or its goal, after the last of them."""
+    if 2 * v < via.shape[0]:
+        return via[2 * v], via[2 * v + 1]
+    return ends[2], ends[3]
+
+
+@inline
 def hits_area(
     x1: float, y1: float, x2: float, y2: float, vertices: Floats, first: int, last: int, area: Floats
 ) -> bool:
@@ -67,9 +75,7 @@ def paper_costs(
         f, total, n = 0.0, 0.0, 0
         x1, y1 = ends[0], ends[1]
         for v in range(X.shape[1] // 2 + 1):
-            x2, y2 = ends[2], ends[3]
-            if 2 * v < X.shape[1]:
-                x2, y2 = X[i, 2 * v], X[i, 2 * v + 1]
+            x2, y2 = corner(X[i], v, ends)
             px, py = x2 - x1, y2 - y1
             L = math.hypot(px, py)
             total += L
@@ -108,9 +114,7 @@ def overlap_costs(
         f, n = 0.0, 0
         x1, y1 = ends[0], ends[1]
         for v in range(X.shape[1] // 2 + 1):
-            x2, y2 = ends[2], ends[3]
-            if 2 * v < X.shape[1]:
-                x2, y2 = X[i, 2 * v], X[i, 2 * v + 1]
+            x2, y2 = corner(X[i], v, ends)
             px, py = x2 - x1, y2 - y1
             L = math.hypot(px, py)
             f += L
