@@ -12,7 +12,7 @@ from pin_metaik.errors import InvalidBounds
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, init=False)
 class Box:
     """The points ``lower <= x <= upper``, coordinate by coordinate.
 
@@ -30,8 +30,10 @@ class Box:
     upper: Array
     _rows: tuple[Array, Array] = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
-        lower, upper = _vector("lower", self.lower), _vector("upper", self.upper)
+    def __init__(self, lower: ArrayLike, upper: ArrayLike | None = None) -> None:
+        if upper is None:
+            raise InvalidBounds("the box of a search has lower and upper bounds; a solid is a mik.collision.Box(size)")
+        lower, upper = _vector("lower", lower), _vector("upper", upper)
         if lower.shape != upper.shape:
             raise InvalidBounds(f"lower has {lower.size} bounds and upper has {upper.size}: they must match")
         for index in np.flatnonzero(lower > upper):
@@ -102,7 +104,7 @@ def _vector(name: str, values: ArrayLike) -> Array:
     """A read-only copy of a vector of finite floats."""
     try:
         vector = np.array(values, dtype=float)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise InvalidBounds(f"{name} bounds must be numbers: {error}") from None
     if vector.ndim != 1 or vector.size == 0:
         raise InvalidBounds(f"{name} bounds must be one vector of at least one number, not of shape {vector.shape}")
