@@ -11,6 +11,7 @@ import coal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidGeometry
 
 FLAT = 1e-9  # thickness of a set of points, in its lengths, below which it has none
@@ -62,6 +63,7 @@ class Mesh:
             )
 
     @staticmethod
+    @checked
     def read(path: str | Path, scale: float = 1.0) -> Mesh:
         """The mesh in a file that coal's reader knows: .stl, .obj, .dae, .ply and others.
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.case import Task
 from pin_metaik.compare.store import read_record, read_rows
 from pin_metaik.compare.trial import Trial
@@ -57,6 +58,7 @@ class Replay:
             yield "as its row says" if self.same else f"its row differs: {self.row}"
 
 
+@checked
 def replay(folder: Path, name: str) -> Replay:
     """Run a trial of a comparison again.
 

@@ -13,6 +13,7 @@ from typing import Any, Literal, TypeAlias
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare import environment
 from pin_metaik.compare.record import Record
 from pin_metaik.compare.store import Appender, need_parquet, open_record, read_rows, write_parquet
@@ -58,6 +59,7 @@ class Outcome:
         return f"{self.done:,} of {self.planned:,} rows, {fresh}{errors}: {state}"
 
 
+@checked
 def compare(
     suite: Suite,
     folder: Path,

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, field
 from typing import Any
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.case import Case
 from pin_metaik.compare.lookup import case_of, method_of
 from pin_metaik.compare.method import Method
@@ -16,6 +17,7 @@ from pin_metaik.errors import InvalidSetting
 from pin_metaik.robots import load_robot
 
 
+@checked
 @dataclass(frozen=True)
 class Suite:
     """A comparison.
@@ -65,6 +67,7 @@ class Suite:
         """How many rows it has."""
         return len(self.arms) * len(self.tasks) * len(self.entrants) * self.targets * self.seeds
 
+    @checked
     def units(self, done: Set[tuple[str, str, str, int, int]] = frozenset()) -> Iterator[Unit]:
         """The work that is left, a task at a time."""
         for (robot, spec), case, target in itertools.product(

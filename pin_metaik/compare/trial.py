@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.case import Attempt, Case, Task, travel
 from pin_metaik.compare.method import Answer, Method
 from pin_metaik.ik import IKProblem
@@ -86,6 +87,7 @@ class Trial:
         return asdict(self)
 
     @staticmethod
+    @checked
     def of(row: Mapping[str, Any]) -> Trial:
         """What ``row`` made, read back from JSON."""
         vectors = {name: None if row[name] is None else tuple(row[name]) for name in ("x", "curve")}

@@ -13,6 +13,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidSetting, InvalidTarget
 from pin_metaik.ik.problem import IKProblem
@@ -62,6 +63,7 @@ class IKPath:
         return x
 
 
+@checked
 def solve_ik_path(
     chain: Chain,
     targets: Sequence[TargetLike] | NDArray[np.float64],

@@ -10,6 +10,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.problem import IKProblem
@@ -58,6 +59,7 @@ class IKSolutions:
         return iter(self.q)
 
 
+@checked
 def solve_ik_all(
     chain: Chain,
     target: TargetLike | Sequence[TargetLike],

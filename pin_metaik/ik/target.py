@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.kinematics.pose import as_pose, as_position
 
-TargetLike: TypeAlias = "Target | pin.SE3 | ArrayLike"
 Tolerance: TypeAlias = float | tuple[float, float, float]
 
 DEFAULT_TOLERANCE = 1e-5
@@ -122,6 +121,9 @@ class Target:
         position, near = _measure(error.translation.tolist(), self.position_tolerance)
         orientation, aligned = _measure(pin.log3(error.rotation).tolist(), self.orientation_tolerance)
         return Judgement(position, orientation, near and aligned)
+
+
+TargetLike: TypeAlias = Target | pin.SE3 | ArrayLike
 
 
 class Judgement(NamedTuple):

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidBounds
 from pin_metaik.optimize import Box
 
@@ -108,6 +109,7 @@ class Limits:
             low - tolerance <= v <= high + tolerance for (low, high), v in zip(self._pairs, x.tolist(), strict=True)
         )
 
+    @checked
     def replace(self, limits: dict[str, tuple[float, float]]) -> Limits:
         """The same limits with some joints' ranges replaced, e.g. ``{"joint_2": (-1.0, 1.0)}``.
 

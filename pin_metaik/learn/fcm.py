@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.learn.arrays import Array, as_table
 from pin_metaik.randomness import as_generator
@@ -34,6 +35,7 @@ class Clusters:
     interrupted: bool = False
 
 
+@checked
 def fuzzy_c_means(
     Z: ArrayLike,
     clusters: int,
@@ -90,6 +92,7 @@ def fuzzy_c_means(
     return Clusters(centres, np.array(objective), converged, interrupted)
 
 
+@checked
 def memberships(Z: ArrayLike, centres: ArrayLike, m: float = 2.0) -> Array:
     """The memberships (c, n) of points Z (n, d) in clusters with centres (c, d): columns sum to one."""
     Z, centres = as_table("the points", Z), as_table("the centres", centres)

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.learn.arrays import Array
 from pin_metaik.randomness import as_generator
@@ -15,6 +16,7 @@ from pin_metaik.randomness import as_generator
 ROWS = 4096  # at a time: as many stay in the cache, and BLAS does not spread them over threads that wait for each other
 
 
+@checked
 @dataclass(frozen=True)
 class Network:
     """Layers of tanh neurons and one linear output; ``Network(2, (5, 5))`` is 2:5:5:1.

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.learn.arrays import Array, as_table
 from pin_metaik.learn.network import Network
@@ -104,6 +105,7 @@ class Regressor:
         return np.asarray((np.abs(self.inputs.down(X)) <= 1 + EDGE).all(axis=1))
 
 
+@checked
 def fit(
     X: ArrayLike,
     y: ArrayLike,

@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.mobile.motion.trajectory import Samples
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
 from pin_metaik.robots import Robot
@@ -37,6 +38,7 @@ URDF = """<?xml version="1.0"?>
 """
 
 
+@checked
 def mobile_robot(vehicle: SynchroDrive, height: float = HEIGHT) -> Robot:
     """The robot as Pinocchio knows it; its frame ``base`` is on the floor below its centre, x is ahead.
 
@@ -53,11 +55,13 @@ def mobile_robot(vehicle: SynchroDrive, height: float = HEIGHT) -> Robot:
     return Robot(vehicle.name, model, "base", urdf, Path(__file__))
 
 
+@checked
 def configurations(samples: Samples) -> NDArray[np.float64]:
     """Pinocchio's configurations (n, 4) along a trajectory."""
     return np.column_stack((samples.x, samples.y, np.cos(samples.heading), np.sin(samples.heading)))
 
 
+@checked
 def velocities(samples: Samples) -> NDArray[np.float64]:
     """Pinocchio's velocities (n, 3) along a trajectory, in the robot's own frame."""
     return np.column_stack((samples.v, np.zeros_like(samples.v), samples.omega))

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.budget import Budget
 from pin_metaik.optimize.elite import Elite
@@ -35,6 +36,7 @@ class Best(NamedTuple):
     cost: float
 
 
+@checked
 class AskTell:
     """A search that waits: `ask` for points, evaluate them anywhere, `tell` their costs, until `status` is set.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.optimize.cmaes import CMAES
 from pin_metaik.optimize.de import DE
@@ -27,6 +28,7 @@ ALGORITHMS: dict[str, type[Metaheuristic]] = {
 }
 
 
+@checked
 def make(algorithm: str | Metaheuristic) -> Metaheuristic:
     """An algorithm from its name, with its default settings; an object that already is one is returned as it is.
 

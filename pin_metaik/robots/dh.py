@@ -9,6 +9,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidConfiguration, InvalidTable
 
 Array = NDArray[np.float64]
@@ -89,6 +90,7 @@ class Placement:
         return turn
 
 
+@checked
 @dataclass(frozen=True)
 class DHTable:
     """A serial arm as a DH table.
@@ -131,6 +133,7 @@ class DHTable:
         """Names of the joints, from the base."""
         return tuple(row.name or f"joint_{i}" for i, row in enumerate(self.rows, start=1))
 
+    @checked
     def frames(self, q: ArrayLike) -> Array:
         """Frames 0 (the base) to n in the world.
 
@@ -155,6 +158,7 @@ class DHTable:
             T.append(T[-1] @ (along_z @ along_x if self.convention == "standard" else along_x @ along_z))
         return np.array(T)
 
+    @checked
     def fk(self, q: ArrayLike) -> Array:
         """Tool frame in the world, 4x4: the DH product between base and tool.
 

@@ -12,6 +12,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidConfiguration
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.inverse import leg_vectors
@@ -42,6 +43,7 @@ class ClosedModel:
         """The free-flyer; its velocity is in the platform frame."""
         return self.model.joints[self.model.getJointId("platform_joint")]
 
+    @checked
     def leg(self, i: int) -> list[pin.JointModel]:
         """Joints of leg i, counted from 0: about x, about y, length."""
         names = (f"leg_{i + 1}_about_x", f"leg_{i + 1}_about_y", f"leg_{i + 1}_length")
@@ -52,6 +54,7 @@ class ClosedModel:
         """Columns of v that are the rates of the legs (n)."""
         return [self.leg(i)[2].idx_v for i in range(self.mechanism.geometry.n)]
 
+    @checked
     def configuration(self, pose: PoseLike) -> Array:
         """The configuration q (nq,) at a pose, in closed form: the direction of a leg is Rx(a) Ry(b) z."""
         T = as_poses(pose)[0]
@@ -65,12 +68,14 @@ class ClosedModel:
             q[about_x.idx_q], q[about_y.idx_q], q[length.idx_q] = np.arctan2(-y, z), np.arcsin(np.clip(x, -1, 1)), d
         return q
 
+    @checked
     def pose(self, q: Array) -> Array:
         """The pose (4, 4) of the platform in a configuration."""
         first = self.platform.idx_q
         pose: Array = pin.XYZQUATToSE3(q[first : first + 7]).homogeneous
         return pose
 
+    @checked
     def residual(self, q: ArrayLike) -> tuple[Array, Array]:
         """How far the loops are open, m (3 n,), and its derivative by v (3 n, nv).
 
@@ -90,6 +95,7 @@ class ClosedModel:
             rows.append(closure.jacobian(self.model, data, state))
         return np.concatenate(errors), np.concatenate(rows)
 
+    @checked
     def forward(self, lengths: ArrayLike, start: PoseLike) -> Array | None:
         """The pose (4, 4) at which the loops close with these leg lengths (n,) in m, by Newton; None if it finds none.
 
@@ -111,6 +117,7 @@ class ClosedModel:
             q = pin.integrate(self.model, q, step)
         return None
 
+    @checked
     def rates(self, pose: PoseLike) -> Array:
         """d_dot = J (v, omega) from the closed loops: J (n, 6), v of P and omega in the base frame."""
         q = self.configuration(pose)
@@ -125,6 +132,7 @@ class ClosedModel:
         return rates
 
 
+@checked
 def closed_model(mechanism: Mechanism) -> ClosedModel:
     """A mechanism in Pinocchio, its loops closed where the ends of legs and platform of its URDF belong together."""
     model = pin.buildModelFromXML(to_urdf(mechanism))

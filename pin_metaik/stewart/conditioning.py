@@ -10,6 +10,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.settings import one_of
 from pin_metaik.optimize.space import Array
@@ -25,6 +26,7 @@ UNLIMITED = np.array([0.0, np.inf, -1.0, -1.0, 0.0])
 SPAN = 100.0  # the best characteristic length is looked for up to so many times either side of the platform's size
 
 
+@checked
 @dataclass(frozen=True)
 class Dexterity:
     """How a Jacobian becomes one number.
@@ -55,6 +57,7 @@ class Dexterity:
 DEFAULT = Dexterity()
 
 
+@checked
 def characteristic_length(geometry: Geometry, poses: PoseLike, dexterity: Dexterity = DEFAULT) -> float:
     """The length L in m that these settings mean for these poses.
 
@@ -70,6 +73,7 @@ def characteristic_length(geometry: Geometry, poses: PoseLike, dexterity: Dexter
             return float(length)
 
 
+@checked
 def best_length(geometry: Geometry, poses: PoseLike, norm: Norm = "frobenius") -> float:
     """The one characteristic length in m with the greatest mean nu over these poses.
 
@@ -86,6 +90,7 @@ def best_length(geometry: Geometry, poses: PoseLike, norm: Norm = "frobenius") -
     return exp(found) if loss(found) < 0.0 else geometry.platform_radius
 
 
+@checked
 def conditioning(geometry: Geometry, poses: PoseLike, dexterity: Dexterity = DEFAULT) -> Array:
     """The local conditioning index nu (k,) at poses, 0 ... 1 and 0 where J is singular; one number for a single pose.
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.optimize import AskTell, Budget, Result, Status, minimize
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.fitness import UNUSABLE, Fitness, Score, task_of
@@ -48,6 +49,7 @@ class Designed:
         return f"{self.mechanism.name}: {found} after {self.search.evaluations} designs in {self.search.seconds:.3g} s"
 
 
+@checked
 def design(
     mechanism: Mechanism, *, rng: int | np.random.Generator | None = None, watch: Watch | None = None
 ) -> Designed:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.cells import cells_of
@@ -36,6 +37,7 @@ class Score:
     workspace: float
 
 
+@checked
 class Fitness:
     """The objective of a design: costs (k,) of points (k, v); the cost of a feasible design is minus its fitness.
 
@@ -74,6 +76,7 @@ class Fitness:
         score, least = self.score(workspace), self.task.least_workspace
         return UNUSABLE + 1.0 - score.workspace / least if score.workspace < least else -score.fitness
 
+    @checked
     def missing(self, dimensions: Dimensions) -> float:
         """How much length is missing for the joints to keep their gap and the legs to extend, m; 0 if none."""
         gaps = np.concatenate(
@@ -85,6 +88,7 @@ class Fitness:
         short = np.maximum(self.task.joint_gap - gaps, 0.0).sum() + max(dimensions.shortest - dimensions.longest, 0.0)
         return float(short) if gaps.min() > 0.0 else float(short) + self.cube
 
+    @checked
     def build(self, dimensions: Dimensions) -> tuple[Geometry, LegLimits]:
         """The platform with these dimensions.
 
@@ -100,6 +104,7 @@ class Fitness:
         )
         return geometry, replace(self.mechanism.limits, shortest=dimensions.shortest, longest=dimensions.longest)
 
+    @checked
     def workspace(self, geometry: Geometry, limits: LegLimits) -> Workspace:
         """The workspace on the task's grid; unlike that of ``survey`` it may be empty."""
         dexterity = self.mechanism.dexterity
@@ -109,6 +114,7 @@ class Fitness:
         judge_cells(geometry, limits, cells, length, dexterity, states, nu)
         return with_best_length(Workspace(geometry, limits, cells, dexterity, length, states, nu))
 
+    @checked
     def score(self, workspace: Workspace) -> Score:
         """The fitness of a workspace that is not singular, and its two parts."""
         counted = workspace.reached

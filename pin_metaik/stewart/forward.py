@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidConfiguration, InvalidGeometry, InvalidSetting
 from pin_metaik.optimize.space import Array
 from pin_metaik.randomness import as_generator
@@ -69,6 +70,7 @@ class Forward:
         return ForwardStatus(int(self.states[0]))
 
 
+@checked
 def forward(geometry: Geometry, lengths: ArrayLike, start: PoseLike | None = None) -> Forward:
     """The pose nearest to the start, in Newton's sense, at which the legs have these lengths.
 
@@ -91,6 +93,7 @@ def forward(geometry: Geometry, lengths: ArrayLike, start: PoseLike | None = Non
     return _newton(geometry, d, np.ascontiguousarray(np.broadcast_to(T, (len(d), 4, 4))).copy())
 
 
+@checked
 def all_forward(geometry: Geometry, lengths: ArrayLike, rng: int | np.random.Generator | None = 0) -> Array:
     """Every pose found (s, 4, 4) at which six legs have these lengths, highest first; s is 0 ... 40.
 

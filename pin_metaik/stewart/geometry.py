@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
 
@@ -141,6 +142,7 @@ def chords(radius: float, angles: Array) -> Array:
     return np.asarray(2.0 * radius * np.sin(np.maximum(np.minimum(0.5 * steps, np.pi), -np.pi / 2)))
 
 
+@checked
 def legs_of(connection: ArrayLike) -> tuple[tuple[int, int], ...]:
     """The legs of a connection matrix (joints of the base, joints of the platform) of zeros and ones, row by row.
 

@@ -7,6 +7,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidBounds
 from pin_metaik.optimize.settings import whole
 
@@ -59,6 +60,7 @@ class Grid:
                 object.__setattr__(self, name, as_range(name, ends))
 
     @classmethod
+    @checked
     def at(cls, xyz: tuple[float, float, float], **orientations: object) -> Grid:
         """A grid of orientations at one position (m): ``Grid.at((0, 0, 0.4), steps=(9, 9, 1), roll=(-0.3, 0.3))``."""
         x, y, z = xyz

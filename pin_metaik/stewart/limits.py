@@ -9,6 +9,7 @@ from numbers import Real
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.geometry import Geometry
@@ -114,6 +115,7 @@ class LegLimits:
         angles = [cos(angle) if angle < pi else -1.0 for angle in (self.base_angle, self.platform_angle)]
         return np.array([self.shortest, self.longest, *angles, self.distance])
 
+    @checked
     def sockets(self, geometry: Geometry) -> Array:
         """Unit axes (2, n, 3) of the base joints (base frame) and of the platform joints (platform frame).
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import MissingExtra
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.body import body_of, draw_body, polygons
@@ -25,6 +26,7 @@ TAG = {"boxstyle": "circle,pad=0.15", "facecolor": "white", "edgecolor": STEEL, 
 VIEW = {"elev": 18.0, "azim": -60.0}
 
 
+@checked
 def draw(mechanism: Mechanism, workspace: Workspace | None = None, pose: PoseLike | None = None) -> Figure:
     """A picture of a mechanism, and beside it of its workspace; see ``draw_into``.
 
@@ -37,6 +39,7 @@ def draw(mechanism: Mechanism, workspace: Workspace | None = None, pose: PoseLik
     return figure
 
 
+@checked
 def draw_into(
     figure: Figure, mechanism: Mechanism, workspace: Workspace | None = None, pose: PoseLike | None = None
 ) -> None:
@@ -67,6 +70,7 @@ def draw_into(
         _dress(axes, body.labels)
 
 
+@checked
 def draw_history(designed: Designed) -> Figure:
     """Best fitness over designs looked at.
 
@@ -85,6 +89,7 @@ def draw_history(designed: Designed) -> Figure:
     return figure
 
 
+@checked
 def save_picture(figure: Figure, path: str | Path) -> Path:
     """Write a figure to a file; the ending says the format (.png, .svg, .pdf)."""
     path = Path(path)

@@ -9,6 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.cells import Cells, cells_of
 from pin_metaik.stewart.conditioning import DEFAULT, Dexterity, best_length, measure
@@ -24,6 +25,7 @@ Watch: TypeAlias = Callable[[int, int], object]
 CHUNK = 200_000  # poses looked at between two words on progress: a tenth of a second at most
 
 
+@checked
 def survey(
     geometry: Geometry,
     limits: LegLimits,

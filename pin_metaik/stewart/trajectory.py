@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.optimize.settings import whole, within
 from pin_metaik.optimize.space import Array
@@ -20,6 +21,7 @@ from pin_metaik.stewart.loading import load_kernels
 from pin_metaik.stewart.poses import PoseLike, as_poses
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class Trajectory:
     """Poses of P in the base frame at ascending times.
@@ -52,6 +54,7 @@ class Trajectory:
             object.__setattr__(self, name, value)
 
     @classmethod
+    @checked
     def through(cls, times: ArrayLike, poses: PoseLike) -> Trajectory:
         """Through poses (k, 4, 4) at times (k,) in s; twists are differences between the neighbours of each pose.
 
@@ -62,6 +65,7 @@ class Trajectory:
         steady = len(T) > 1 and at.shape == (len(T),) and bool((np.diff(at) > 0.0).all())
         return cls(at, T, _differences(at, T) if steady else np.zeros((len(T), 6)))  # the class says what is wrong
 
+    @checked
     def at(self, times: ArrayLike) -> Array:
         """Poses (j, 4, 4) at times (j,) in s: between two samples along the straight line and the shortest turn."""
         t = np.clip(np.array(times, dtype=float, ndmin=1), self.times[0], self.times[-1])
@@ -72,6 +76,7 @@ class Trajectory:
         )
 
 
+@checked
 def straight(start: PoseLike, end: PoseLike, seconds: float, samples: int = 101) -> Trajectory:
     """From rest to rest along a straight line, turning about one axis, in quintic time.
 
@@ -135,6 +140,7 @@ class Motion:
         return stroke
 
 
+@checked
 def follow(
     geometry: Geometry, trajectory: Trajectory, limits: LegLimits | None = None, dexterity: Dexterity = DEFAULT
 ) -> Motion:
@@ -155,6 +161,7 @@ def follow(
     return Motion(trajectory, leg_lengths(geometry, T), rates, nu, states, length)
 
 
+@checked
 def judge_poses(geometry: Geometry, limits: LegLimits, poses: PoseLike) -> NDArray[np.int8]:
     """A ``PoseState`` (k,) for each of the poses.
 

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.cells import Cells
@@ -122,11 +123,13 @@ class Workspace:
         """
         return float(self.nu[self.regular].mean()) if self.regular.any() else None
 
+    @checked
     def dexterous(self, threshold: float) -> NDArray[np.bool_]:
         """Which poses have an LCI of at least the threshold (nx, ny, nz, o)."""
         dexterous: NDArray[np.bool_] = self.regular & (self.nu >= threshold)
         return dexterous
 
+    @checked
     def dexterous_volume(self, threshold: float) -> float:
         """Volume of the positions with an LCI of at least the threshold in every orientation, m^3."""
         return float(self.dexterous(threshold).all(axis=-1).sum() * self.cells.volume)
@@ -136,11 +139,13 @@ class Workspace:
         """Positions reached in at least one orientation, m (r, 3)."""
         return self.position_of(np.argwhere(self.reached.any(axis=-1)))
 
+    @checked
     def position_of(self, index: NDArray[np.int64]) -> Array:
         """Positions (r, 3) in m of cells (r, 3 or more) given by their indices."""
         cells = self.cells
         return np.column_stack((cells.xs[index[:, 0]], cells.ys[index[:, 1]], cells.zs[index[:, 2]]))
 
+    @checked
     def poses_of(self, index: NDArray[np.int64]) -> Array:
         """Poses (r, 4, 4) of the grid given by their indices (r, 4)."""
         T = np.tile(np.eye(4), (len(index), 1, 1))
@@ -148,6 +153,7 @@ class Workspace:
         T[:, :3, :3] = self.cells.rotations[index[:, 3]]
         return T
 
+    @checked
     def poses(self, which: NDArray[np.bool_]) -> Array:
         """Poses (r, 4, 4) of the grid where `which` (nx, ny, nz, o) is true."""
         return self.poses_of(np.argwhere(which))

@@ -9,6 +9,7 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize import ALGORITHMS, Metaheuristic, make
 from pin_metaik.stewart.grid import Grid
@@ -21,6 +22,7 @@ from pin_metaik.stewart.task import DesignTask
 DEG = ANGLES["deg"]
 
 
+@checked
 def save_mechanism(mechanism: Mechanism, path: str | Path) -> Path:
     """Write a mechanism to a ``.toml`` file; loading it gives the same mechanism, and saving that the same file.
 
@@ -32,6 +34,7 @@ def save_mechanism(mechanism: Mechanism, path: str | Path) -> Path:
     return path
 
 
+@checked
 def to_toml(mechanism: Mechanism) -> str:
     """TOML text of a mechanism: lengths in its unit, angles in degrees.
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.environment import read_environment
 from pin_metaik.compare.report.by_case import by_case, convergence, duels, rates
 from pin_metaik.compare.report.html import html
@@ -22,6 +23,7 @@ TITLE = "Inverse kinematics where it is hard"
 PAGE, STEM = "report.html", "report"
 
 
+@checked
 def write_report(folder: Path) -> list[Path]:
     """Write the report on the comparison in a folder, into its folder ``report``.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.protocol import Refinement
@@ -17,6 +18,7 @@ SETTLED = 1.0 - 1e-9  # ... or this one, when there is nothing else to try
 STIFF = 1.0  # damping where a solution is far: plain least squares overshoots there
 
 
+@checked
 @dataclass(frozen=True)
 class DLS:
     """Damped least squares (Nakamura and Hanafusa 1986; Wampler 1986), all starts in one compiled loop.

@@ -7,12 +7,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.iterate import Patience, iterate
 from pin_metaik.ik.refine.protocol import Refinement
 from pin_metaik.optimize.settings import within
 
 
+@checked
 @dataclass(frozen=True)
 class Newton:
     """Newton-Raphson, dx = -J^+ r (Whitney 1969), clipped at the limits.

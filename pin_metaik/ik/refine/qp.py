@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.iterate import Patience, Step, iterate
@@ -19,6 +20,7 @@ from pin_metaik.optimize.settings import positive
 FLOOR = 1e-9  # what is left of the damping at a solution
 
 
+@checked
 @dataclass(frozen=True)
 class QP:
     """Inverse kinematics as a sequence of quadratic programs (Kanoun, Lamiraux and Wieber 2011; Escande et al. 2014).

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.iterate import Patience, iterate
 from pin_metaik.ik.refine.protocol import Refinement
@@ -15,6 +16,7 @@ from pin_metaik.optimize.settings import positive
 ZERO = 1e-10  # singular values below it have no direction to damp
 
 
+@checked
 @dataclass(frozen=True)
 class SDLS:
     """Selectively damped least squares (Buss and Kim 2005), clipped at the limits.

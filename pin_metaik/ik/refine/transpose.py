@@ -7,11 +7,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.iterate import Patience, iterate
 from pin_metaik.ik.refine.protocol import Refinement
 
 
+@checked
 @dataclass(frozen=True)
 class Transpose:
     """Jacobian transpose, dx = -alpha J'r (Wolovich and Elliott 1984), clipped at the limits.

@@ -6,6 +6,7 @@ from time import perf_counter
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.learn.arrays import Array
 from pin_metaik.learn.network import Network
@@ -25,6 +26,7 @@ TRAINERS: dict[str, type[Trainer]] = {
 }
 
 
+@checked
 def make_trainer(trainer: str | Trainer) -> Trainer:
     """A trainer from its name, with its default settings; an object is returned as it is.
 
@@ -38,6 +40,7 @@ def make_trainer(trainer: str | Trainer) -> Trainer:
     return TRAINERS[trainer]()
 
 
+@checked
 def train(
     trainer: str | Trainer,
     network: Network,

@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.learn import OutsideTraining, Regressor, Trainer, fit
 from pin_metaik.learn.arrays import Array
@@ -85,6 +86,7 @@ class LearnedTurn:
     angles: tuple[float, float]
     speeds: tuple[float, float]
 
+    @checked
     def tangent(self, v: ArrayLike, theta: ArrayLike) -> Array:
         """Tangent lengths (...) in m at speeds (...) in m/s and angles (...) in rad; 0 at speed 0.
 
@@ -111,6 +113,7 @@ class LearnedTurn:
         lengths[moving] = self._predict(v[moving], theta[moving])
         return lengths
 
+    @checked
     def knows(self, v: ArrayLike, theta: ArrayLike) -> NDArray[np.bool_]:
         """Whether speeds (...) and angles (...) lie in the training range."""
         v, theta = np.asarray(v), np.asarray(theta)
@@ -119,6 +122,7 @@ class LearnedTurn:
         turned = (theta * slack >= self.angles[0]) & (theta <= self.angles[1] * slack)
         return np.asarray(fast & turned)
 
+    @checked
     def at(self, theta: Array) -> LearnedCorners:
         """The network at the corners of a route, with angles (n,) in rad.
 
@@ -182,6 +186,7 @@ class LearnedCorners:
         return TurnReport(float(error.max(initial=0.0)), tuple(int(i) + 1 for i in np.flatnonzero(~self.known)))
 
 
+@checked
 def learn_turn(
     vehicle: SynchroDrive,
     *,

@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 import shapely
 
+from pin_metaik.arguments import checked
 from pin_metaik.mobile.motion.learned import TurnReport
 from pin_metaik.mobile.motion.route import Route, keeps_clear
 from pin_metaik.mobile.motion.trajectory import SAMPLES, Trajectory
@@ -114,6 +115,7 @@ class TrajectoryPlan:
             )
         return said
 
+    @checked
     def as_dict(self, dt: float = SAMPLES) -> dict[str, Any]:
         """Plain values, for JSON, with the samples."""
         vehicle, clearance = self.route.vehicle, self.clearance

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 import shapely
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.mobile.motion.straight import straight_time
 from pin_metaik.mobile.motion.turn import lead_time, turn_shape, turn_time
@@ -42,6 +43,7 @@ class Route:
     caps: Array
 
     @staticmethod
+    @checked
     def along(
         path: Path, vehicle: SynchroDrive, obstacles: Sequence[shapely.Polygon] = (), radius: float | None = None
     ) -> Route:
@@ -107,6 +109,7 @@ class Route:
         needed = np.abs(v[:, 1:] ** 2 - v[:, :-1] ** 2) / (2 * self.vehicle.a_max)
         return np.asarray(np.maximum(needed - self.straights(V, tangents), 0).sum(axis=1))
 
+    @checked
     def clear_speed(self, corner: int, obstacles: Sequence[shapely.Polygon], radius: float) -> float:
         """The largest speed up to the cap at which the curve, and all between it and the corner, keeps the radius.
 

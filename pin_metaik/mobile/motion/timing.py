@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.motion.learned import LearnedTurn, TurnReport, learn_turn
 from pin_metaik.mobile.motion.result import Method, TrajectoryPlan
@@ -28,6 +29,7 @@ SEARCH = DE(agents=30)  # with best/1/bin it stops early: up to 3 % too slow wit
 SEARCH_BUDGET = Budget(evaluations=30 * 500)
 
 
+@checked
 def plan_trajectory(
     path: Path | ArrayLike,
     vehicle: SynchroDrive = NOMAD_200,

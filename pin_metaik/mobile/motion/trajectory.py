@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.motion.turn import clothoid
 from pin_metaik.mobile.paths.path import write_table
@@ -75,6 +76,7 @@ class Samples:
         return np.column_stack((self.x, self.y))
 
 
+@checked
 class Trajectory:
     """A synchro-drive robot's motion as a list of phases, from rest at a pose.
 
@@ -105,6 +107,7 @@ class Trajectory:
         """Times (p + 1,) in s at which phases begin and the last ends."""
         return self._begins.copy()
 
+    @checked
     def at(self, t: ArrayLike) -> Samples:
         """States at times t (n,) in s, by the closed form; before the start and after the end it stands still."""
         times = np.clip(np.atleast_1d(np.asarray(t, dtype=float)), 0.0, self.duration)
@@ -118,6 +121,7 @@ class Trajectory:
         omega = phases[:, 3] + phases[:, 2] * within
         return Samples(times, x, y, heading, v, omega, phases[:, 1], phases[:, 2])
 
+    @checked
     def sample(self, dt: float = SAMPLES) -> Samples:
         """States every dt seconds, and at the beginning of every phase and the end.
 
@@ -128,14 +132,17 @@ class Trajectory:
             raise InvalidSetting(f"dt must be above 0 s, not {dt!r}")
         return self.at(np.union1d(np.arange(0.0, self.duration, dt), self._begins))
 
+    @checked
     def write_csv(self, file: str | File, dt: float = SAMPLES) -> None:
         """Write the samples as CSV."""
         write_table(file, (field.name for field in fields(Samples)), self.sample(dt).table)
 
+    @checked
     def write_json(self, file: str | File, dt: float = SAMPLES) -> None:
         """Write the samples as JSON: an object with one array for each column."""
         File(file).write_text(json.dumps(self.as_dict(dt), allow_nan=False), encoding="utf-8")
 
+    @checked
     def as_dict(self, dt: float = SAMPLES) -> dict[str, list[float]]:
         """The samples as plain lists, by name."""
         samples = self.sample(dt)

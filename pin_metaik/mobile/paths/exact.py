@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
+from pin_metaik.arguments import checked
 from pin_metaik.mobile.errors import NoPath
 from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.paths.visibility import Visibility, VisibilityGraph
@@ -12,6 +13,7 @@ from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.scene import Point
 
 
+@checked
 def shortest_path(space: FreeSpace, start: Point, goal: Point, visibility: Visibility | None = None) -> Path:
     """The shortest path that keeps the space's clearance.
 

@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import UnknownName
 from pin_metaik.mobile.paths import fitness_kernels as kernels
 from pin_metaik.mobile.world.freespace import FreeSpace
@@ -43,6 +44,7 @@ class Fitness(Protocol):
         ...
 
 
+@checked
 @dataclass(frozen=True)
 class ExactFitness:
     """Length, and ``c_p (1 + length inside)`` for every stretch of a segment inside obstacles or walls.
@@ -63,6 +65,7 @@ class ExactFitness:
         return Overlap(space, np.array([*start, *goal]), self.penalty * space.extent)
 
 
+@checked
 @dataclass(frozen=True)
 class PaperFitness:
     """Eq. 5 of Toz, Erdogmus and Sahin 2011, to the letter: ``f = sum L + sum c_p (1 + h - d)^2``.

@@ -10,6 +10,7 @@ from pathlib import Path as File
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
 
@@ -48,6 +49,7 @@ class Path:
         """Where it bends: all points but start and goal (n - 2, 2)."""
         return self.points[1:-1]
 
+    @checked
     def straightened(self, slack: float = 0.0) -> Path:
         """The same path without repeated points and points (nearly) on the line between their neighbours.
 
@@ -62,6 +64,7 @@ class Path:
                 kept.append(point)
         return Path(np.array([*kept, self.points[-1]]))
 
+    @checked
     def write(self, file: str | File) -> None:
         """Write x and y of the points as CSV."""
         write_table(file, ("x", "y"), self.points)

@@ -7,6 +7,7 @@ from time import perf_counter
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.mobile.errors import NoPath
 from pin_metaik.mobile.paths.fitness import Fitness, make_fitness
@@ -31,6 +32,7 @@ PAPER_BUDGET = Budget(evaluations=50 * 100)
 PAPER_VIA = 5
 
 
+@checked
 def plan_path(
     problem: PathProblem | Scene,
     method: str | Metaheuristic = EXACT,
@@ -99,6 +101,7 @@ def plan_path(
     )
 
 
+@checked
 def plan_alternatives(problem: PathProblem | Scene, count: int) -> list[PathPlan]:
     """The shortest path and those that go another way round, one for each homotopy class, shortest first.
 

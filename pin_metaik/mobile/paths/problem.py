@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.mobile.paths.exact import shortest_path
 from pin_metaik.mobile.paths.homotopy import shortest_paths
 from pin_metaik.mobile.paths.path import Path
@@ -32,6 +33,7 @@ class PathProblem:
     space: FreeSpace
 
     @staticmethod
+    @checked
     def of(scene: Scene, radius: float = 0.0, margin: float = 0.0, join: Join = "mitre") -> PathProblem:
         """A problem, checked.
 
@@ -62,10 +64,12 @@ class PathProblem:
         """The shortest path. Raises NoPath if there is none."""
         return shortest_path(self.space, self.scene.start, self.scene.goal, self.visibility)
 
+    @checked
     def alternatives(self, count: int) -> list[Path]:
         """The shortest paths of the best homotopy classes, see ``shortest_paths``."""
         return shortest_paths(self.space, self.scene.start, self.scene.goal, count, self.visibility)
 
+    @checked
     def box(self, via: int) -> Box:
         """Where via points may lie: the workspace inside its walls, once for each."""
         x_min, y_min, x_max, y_max = self.space.box

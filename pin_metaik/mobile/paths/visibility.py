@@ -14,6 +14,7 @@ import shapely
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from pin_metaik.arguments import checked
 from pin_metaik.mobile.paths import visibility_kernels as kernels
 from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.growth import rings
@@ -104,6 +105,7 @@ class VisibilityGraph:
         return VisibilityGraph(self.border, self.points, edges)
 
 
+@checked
 class Visibility:
     """The part of the graph that does not depend on start and goal, built once for a free space.
 
@@ -120,6 +122,7 @@ class Visibility:
         self.mutual = np.zeros((len(corners), len(corners)), dtype=bool)
         kernels.see_each_other(*self.border.arrays, corners, self.border.bends, self.border.slack, self.mutual)
 
+    @checked
     def between(self, start: Point, goal: Point) -> VisibilityGraph:
         """The graph with a start and a goal, which must be free."""
         border, c = self.border, len(self.border.corners)

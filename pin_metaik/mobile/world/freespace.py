@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 import shapely
 
+from pin_metaik.arguments import checked
 from pin_metaik.mobile.errors import Blocked
 from pin_metaik.mobile.world.growth import Join, grow
 from pin_metaik.mobile.world.scene import Point, Scene
@@ -36,6 +37,7 @@ class FreeSpace:
     region: shapely.Geometry
 
     @staticmethod
+    @checked
     def of(scene: Scene, clearance: float = 0.0, join: Join = "mitre") -> FreeSpace:
         """The free space of a scene.
 
@@ -102,6 +104,7 @@ class FreeSpace:
         """Distance of a path (n, 2) from the nearest obstacle as given, not grown; inf without obstacles."""
         return float(shapely.LineString(path).distance(self.solid)) if self.scene.obstacles else float("inf")
 
+    @checked
     def check(self, role: str, point: Point) -> None:
         """Make sure that the robot may be somewhere.
 

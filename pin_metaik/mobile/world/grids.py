@@ -12,12 +12,14 @@ import shapely
 from numpy.typing import ArrayLike, NDArray
 from shapely import affinity
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidGeometry
 
 PINCH = 0.01  # cells; where two occupied cells touch at a corner only, a square this wide closes the gap
 MAP_KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class OccupancyGrid:
     """Square cells that are free or occupied.
@@ -67,6 +69,7 @@ class OccupancyGrid:
         return affinity.affine_transform(region, (cos, -sin, sin, cos, x, y))
 
 
+@checked
 def grid_of(
     values: ArrayLike,
     *,
@@ -95,6 +98,7 @@ def grid_of(
     return OccupancyGrid(np.where(unknown, unknown_blocks, numbers > threshold), resolution, origin)
 
 
+@checked
 def read_grid(path: str | Path, *, unknown_blocks: bool = True) -> OccupancyGrid:
     """A grid from a file: ``.npy`` (cells of 1 m, row 0 the lowest) or the ``.yaml`` of a ROS map next to its PGM.
 

@@ -11,11 +11,13 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidGeometry
 
 ACCEPTED = "Polygon, MultiPolygon, GeometryCollection, Feature or FeatureCollection"
 
 
+@checked
 def read_polygons(source: Any) -> tuple[shapely.Polygon, ...]:
     """The polygons of a source, checked one by one.
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import shapely
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.world.scene import Point, Scene
 from pin_metaik.randomness import as_generator
@@ -14,6 +15,7 @@ from pin_metaik.randomness import as_generator
 ATTEMPTS = 2000  # places tried for one obstacle
 
 
+@checked
 def random_scene(
     obstacles: int = 15,
     rng: int | np.random.Generator | None = 0,

@@ -13,6 +13,7 @@ from typing import Any
 
 import shapely
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidGeometry, UnknownName
 from pin_metaik.mobile.files import read_json
 from pin_metaik.mobile.world.grids import read_grid
@@ -59,6 +60,7 @@ class Scene:
         room = max(x_max - x_min, y_max - y_min, 1e-6)
         return x_min - room, y_min - room, x_max + room, y_max + room
 
+    @checked
     def between(self, start: Any, goal: Any) -> Scene:
         """The same world with another start and goal; None keeps the one there is."""
         return replace(self, start=self.start if start is None else start, goal=self.goal if goal is None else goal)
@@ -78,6 +80,7 @@ def scene_names() -> list[str]:
     return sorted(_shipped())
 
 
+@checked
 def load_scene(source: str | Path, start: Any = None, goal: Any = None) -> Scene:
     """A scene by name, or from a file.
 
