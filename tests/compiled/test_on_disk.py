@@ -54,7 +54,7 @@ def test_a_change_of_a_part_is_seen_by_every_loop_that_has_it(copied: Path) -> N
 
 
 def test_machine_code_that_lies_beside_the_package_is_used_where_nothing_can_be_written(copied: Path) -> None:
-    folders = [folder for folder in copied.rglob("__pycache__")]
+    folders = list(copied.rglob("__pycache__"))
     for folder in folders:
         folder.chmod(0o555)
     assert ask(copied, HOME=os.devnull, XDG_CACHE_HOME=os.devnull)[2] == 0
