@@ -59,17 +59,28 @@ class _Unlike(Exception):
     """A value is not what an annotation says."""
 
 
-def checked(door: Door) -> Door:
-    """A function, or a class by its constructor, whose arguments are read by their annotations before it begins.
+def checked_as(error: type[MetaIKError]) -> Callable[[Door], Door]:
+    """A decorator for a function, or for a class by its constructor: arguments are read by their annotations first.
 
-    Every call costs about a microsecond; what is called in inner loops looks at its arguments itself.
+    Every call costs some microseconds; what is called in inner loops looks at its arguments itself.
 
-    Raises:
-        InvalidSetting: From the function, if an argument is not what its annotation says; it names the argument.
+    Args:
+        error: What an argument raises that is not what its annotation says; the message names it.
     """
-    if isinstance(door, type):
-        door.__init__ = checked(door.__init__)  # type: ignore[misc]  # the constructor is the door of a class
+
+    def decorate(door: Door) -> Door:
+        if not isinstance(door, type):
+            return _reading(door, error)
+        door.__init__ = _reading(door.__init__, error)  # type: ignore[misc]  # the constructor is the door of a class
         return cast(Door, door)
+
+    return decorate
+
+
+checked = checked_as(InvalidSetting)
+
+
+def _reading(door: Door, error: type[MetaIKError]) -> Door:
     names = tuple(signature(door).parameters)
     readers: dict[str, tuple[Read, Any]] = {}
 
@@ -77,8 +88,8 @@ def checked(door: Door) -> Door:
     def reading(*args: Any, **kwargs: Any) -> Any:
         if not readers:  # late: annotations may name what is defined further down
             readers.update({name: (_reader(hint), hint) for name, hint in _hints(door).items()})
-        given = [_read(name, value, readers) for name, value in zip(names, args, strict=False)]
-        named = {name: _read(name, value, readers) for name, value in kwargs.items()}
+        given = [_read(name, value, readers, error) for name, value in zip(names, args, strict=False)]
+        named = {name: _read(name, value, readers, error) for name, value in kwargs.items()}
         return door(*given, *args[len(given) :], **named)
 
     return cast(Door, reading)
@@ -93,6 +104,21 @@ def instance(kind: Any, **given: object) -> None:
     for name, value in given.items():
         if not isinstance(value, kind):
             raise InvalidSetting(f"{name} is {_words(kind)}, got {shown(value)}")
+
+
+def number(name: str, value: object, error: type[MetaIKError] = InvalidSetting) -> float:
+    """An argument as a finite number.
+
+    Raises:
+        MetaIKError: Of the class ``error``: it is none.
+    """
+    try:
+        finite = _number(value)
+    except _Unlike:
+        finite = math.nan
+    if not math.isfinite(finite):
+        raise error(f"{name} is a finite number, got {shown(value)}")
+    return finite
 
 
 def array(
@@ -115,14 +141,18 @@ def array(
         numbers = np.asarray(value, dtype=float)
     except (TypeError, ValueError, OverflowError):
         raise error(f"{name} is numbers of shape {wanted}, got {shown(value)}") from None
-    lengths = shape[1:] if shape[:1] == ("...",) else shape
-    ends = numbers.shape[len(numbers.shape) - len(lengths) :] if len(lengths) else ()
-    fits = len(numbers.shape) == len(lengths) or (shape[:1] == ("...",) and len(numbers.shape) > len(lengths))
-    if not fits or any(isinstance(n, int) and n != have for n, have in zip(lengths, ends, strict=True)):
+    if not _fits(numbers.shape, shape):
         raise error(f"{name} has shape {wanted}, got shape {numbers.shape}")
     if finite and not np.isfinite(numbers).all():
         raise error(f"{name} has finite entries, got {shown(value)}")
     return numbers
+
+
+def _fits(have: tuple[int, ...], shape: tuple[int | str, ...]) -> bool:
+    """Whether an array of the shape ``have`` is of a shape as ``array`` takes it."""
+    if shape[:1] == ("...",):
+        shape, have = shape[1:], have[len(have) - len(shape) + 1 :] if len(have) >= len(shape) - 1 else ()
+    return len(have) == len(shape) and all(isinstance(n, str) or n == m for n, m in zip(shape, have, strict=True))
 
 
 def shown(value: object) -> str:
@@ -139,20 +169,20 @@ def shown(value: object) -> str:
     return text if plain or type(value).__name__ in text else f"{text} (a {type(value).__name__})"
 
 
-def _read(name: str, value: Any, readers: Mapping[str, tuple[Read, Any]]) -> Any:
+def _read(name: str, value: Any, readers: Mapping[str, tuple[Read, Any]], error: type[MetaIKError]) -> Any:
     if name not in readers:
         return value
     read, hint = readers[name]
     try:
         return read(value)
     except _Unlike as unlike:
-        hint_ = f"; {unlike}" if str(unlike) else ""
-        raise InvalidSetting(f"{name} is {_words(hint)}, got {shown(value)}{hint_}") from None
+        advice = f"; {unlike}" if str(unlike) else ""
+        raise error(f"{name} is {_words(hint)}, got {shown(value)}{advice}") from None
 
 
 def _hints(door: Callable[..., Any]) -> dict[str, Any]:
     """What the annotations of arguments say; those of an optional package, known to type checkers only, say nothing."""
-    found = {}
+    found: dict[str, Any] = {}
     for name, text in door.__annotations__.items():
         with contextlib.suppress(NameError):
             found |= get_type_hints(types.SimpleNamespace(__annotations__={name: text}), door.__globals__)

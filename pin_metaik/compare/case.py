@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import array, checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.compare.method import Answer
 from pin_metaik.ik import IKProblem, IKStatus, Verdict
@@ -44,6 +44,7 @@ class Task:
     @checked
     def at(chain: Chain, X: Array, start: Array | None = None) -> Task:
         """To reach the poses of the coordinates X (K, n)."""
+        X = array("X", X, "K", chain.n)
         return Task(chain, tuple(chain.placements(q)[0] for q in chain.q(X)), X, start)
 
     @property

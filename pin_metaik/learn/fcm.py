@@ -96,6 +96,10 @@ def fuzzy_c_means(
 def memberships(Z: ArrayLike, centres: ArrayLike, m: float = 2.0) -> Array:
     """The memberships (c, n) of points Z (n, d) in clusters with centres (c, d): columns sum to one."""
     Z, centres = as_table("the points", Z), as_table("the centres", centres)
+    if Z.shape[1] != centres.shape[1]:
+        raise InvalidSetting(f"points and centres have as many columns, got {Z.shape[1]} and {centres.shape[1]}")
+    if not 1 < m < math.inf:
+        raise InvalidSetting(f"m must be a finite number above 1, not {m!r}")
     W = np.empty((len(Z), len(centres)))
     _weigh(Z, centres, m, W, np.empty_like(W))
     U: Array = (W / W.sum(axis=1, keepdims=True)).T

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from pin_metaik.errors import InvalidBudget
 
 
@@ -27,7 +29,7 @@ class Budget:
     target: float | None = None
 
     def __post_init__(self) -> None:
-        whole = hasattr(self.evaluations, "__index__") and not isinstance(self.evaluations, bool)
+        whole = hasattr(self.evaluations, "__index__") and not isinstance(self.evaluations, (bool, np.ndarray))
         if self.evaluations is not None and not (whole and self.evaluations > 0):
             raise InvalidBudget(f"evaluations must be a whole number above 0, not {self.evaluations!r}")
         if self.seconds is not None and not (_is_number(self.seconds) and self.seconds > 0):

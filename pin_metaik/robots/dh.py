@@ -9,7 +9,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import array, checked, checked_as
 from pin_metaik.errors import InvalidConfiguration, InvalidTable
 
 Array = NDArray[np.float64]
@@ -17,6 +17,7 @@ Convention = Literal["standard", "modified"]
 JointType = Literal["revolute", "continuous", "prismatic"]
 
 
+@checked_as(InvalidTable)
 @dataclass(frozen=True)
 class DHRow:
     """One joint with its four constants, of which it varies one: q is added to theta, or to d of a prismatic joint.
@@ -65,6 +66,7 @@ class DHRow:
             raise InvalidTable(f"limits are crossed: lower {self.lower:g} is above upper {self.upper:g}")
 
 
+@checked_as(InvalidTable)
 @dataclass(frozen=True)
 class Placement:
     """A fixed transform: R = Rz(yaw) Ry(pitch) Rx(roll), as URDF has it.
@@ -90,7 +92,7 @@ class Placement:
         return turn
 
 
-@checked
+@checked_as(InvalidTable)
 @dataclass(frozen=True)
 class DHTable:
     """A serial arm as a DH table.
@@ -146,9 +148,7 @@ class DHTable:
         Raises:
             InvalidConfiguration: If q has not one finite number per joint.
         """
-        positions = np.asarray(q, dtype=float)
-        if positions.shape != (len(self.rows),) or not np.isfinite(positions).all():
-            raise InvalidConfiguration(f"{self.name} needs {len(self.rows)} finite joint positions, not {q!r}")
+        positions = array("q", q, len(self.rows), error=InvalidConfiguration)
         T = [self.base.matrix]
         for row, position in zip(self.rows, positions, strict=True):
             theta = row.theta if row.type == "prismatic" else row.theta + position

@@ -12,8 +12,8 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from pin_metaik.arguments import checked
-from pin_metaik.errors import InvalidConfiguration
+from pin_metaik.arguments import array, checked
+from pin_metaik.errors import InvalidConfiguration, InvalidSetting
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.inverse import leg_vectors
 from pin_metaik.stewart.mechanism import Mechanism
@@ -46,6 +46,8 @@ class ClosedModel:
     @checked
     def leg(self, i: int) -> list[pin.JointModel]:
         """Joints of leg i, counted from 0: about x, about y, length."""
+        if not 0 <= i < self.mechanism.geometry.n:
+            raise InvalidSetting(f"leg i is 0 to {self.mechanism.geometry.n - 1}, got {i}")
         names = (f"leg_{i + 1}_about_x", f"leg_{i + 1}_about_y", f"leg_{i + 1}_length")
         return [self.model.joints[self.model.getJointId(name)] for name in names]
 
@@ -71,6 +73,7 @@ class ClosedModel:
     @checked
     def pose(self, q: Array) -> Array:
         """The pose (4, 4) of the platform in a configuration."""
+        q = array("a configuration", q, self.model.nq, error=InvalidConfiguration)
         first = self.platform.idx_q
         pose: Array = pin.XYZQUATToSE3(q[first : first + 7]).homogeneous
         return pose
@@ -82,9 +85,7 @@ class ClosedModel:
         Raises:
             InvalidConfiguration: Not a configuration of the model.
         """
-        q = np.asarray(q, dtype=float)
-        if q.shape != (self.model.nq,) or not np.isfinite(q).all():
-            raise InvalidConfiguration(f"a configuration is {self.model.nq} finite numbers, got shape {q.shape}")
+        q = array("a configuration", q, self.model.nq, error=InvalidConfiguration)
         data = self.model.createData()
         pin.computeJointJacobians(self.model, data, q)
         errors, rows = [], []
@@ -102,9 +103,7 @@ class ClosedModel:
         Raises:
             InvalidConfiguration: Not n finite lengths.
         """
-        d = np.asarray(lengths, dtype=float)
-        if d.shape != (len(self.slides),) or not np.isfinite(d).all():
-            raise InvalidConfiguration(f"leg lengths are {len(self.slides)} finite numbers, got shape {d.shape}")
+        d = array("lengths", lengths, len(self.slides), error=InvalidConfiguration)
         q = self.configuration(start)
         q[[self.leg(i)[2].idx_q for i in range(len(d))]] = d
         free = np.setdiff1d(np.arange(self.model.nv), self.slides)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.cells import cells_of
@@ -61,11 +61,11 @@ class Fitness:
 
     def __call__(self, X: Array) -> Array:
         """Costs (k,) of the designs at points X (k, v)."""
-        return np.array([self.cost(x) for x in X])
+        return np.array([self.cost(x) for x in array("X", X, "k", self.variables.box.dimension)])
 
     def cost(self, x: Array) -> float:
         """Minus the fitness; 1 ... 2 for a workspace of no use, 2 if it is empty, more for what cannot be built."""
-        dimensions = self.variables.dimensions(x)
+        dimensions = self.variables.dimensions(array("x", x, self.variables.box.dimension))
         if missing := self.missing(dimensions):
             return UNBUILDABLE + missing / self.cube
         workspace = self.workspace(*self.build(dimensions))

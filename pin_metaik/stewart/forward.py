@@ -142,7 +142,7 @@ def _newton(geometry: Geometry, d: Array, T: Array) -> Forward:
 def _lengths(geometry: Geometry, lengths: ArrayLike) -> Array:
     try:
         d = np.array(lengths, dtype=float, ndmin=2, order="C")
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidConfiguration(f"leg lengths are numbers in m, got {lengths!r}") from None
     if d.ndim != 2 or d.shape[1] != geometry.n:
         raise InvalidConfiguration(

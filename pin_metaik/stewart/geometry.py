@@ -12,13 +12,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from math import degrees, isfinite, tau
-from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import array, checked, number
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
 
@@ -149,11 +148,8 @@ def legs_of(connection: ArrayLike) -> tuple[tuple[int, int], ...]:
     Raises:
         InvalidGeometry: Not a matrix of zeros and ones.
     """
-    try:
-        matrix = np.asarray(connection, dtype=float)
-    except (TypeError, ValueError):
-        matrix = np.empty(0)
-    if matrix.ndim != 2 or not np.isin(matrix, (0.0, 1.0)).all():
+    matrix = array("a connection matrix", connection, "base joints", "platform joints", error=InvalidGeometry)
+    if not np.isin(matrix, (0.0, 1.0)).all():
         raise InvalidGeometry(
             f"a connection matrix has a row of zeros and ones for every base joint, got {connection!r}"
         )
@@ -169,9 +165,7 @@ def _frozen(array: Array) -> Array:
 def _number(name: str, value: object) -> float:
     if type(value) is float and isfinite(value):  # a design makes thousands of geometries
         return value
-    if isinstance(value, bool) or not isinstance(value, Real) or not isfinite(value):
-        raise InvalidGeometry(f"{name} is a finite number, got {value!r}")
-    return float(value)
+    return float(number(name, value, InvalidGeometry))
 
 
 def _numbers(name: str, values: Any) -> tuple[float, ...]:
@@ -210,7 +204,7 @@ def _angles(name: str, side: str, values: Any) -> tuple[float, ...]:
 def _legs(legs: Any, bases: int, platforms: int) -> tuple[tuple[int, int], ...]:
     try:
         ends = [(int(base), int(platform)) for base, platform in legs]
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidGeometry(f"legs are pairs (base joint, platform joint) counted from 0, got {legs!r}") from None
     if not FEWEST_LEGS <= len(ends) <= MOST_LEGS:
         raise InvalidGeometry(f"a platform has {FEWEST_LEGS} to {MOST_LEGS} legs, got {len(ends)}")

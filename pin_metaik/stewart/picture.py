@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pin_metaik.arguments import checked
-from pin_metaik.errors import MissingExtra
+from pin_metaik.arguments import checked, instance
+from pin_metaik.errors import InvalidSetting, MissingExtra
+from pin_metaik.output import writable
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.body import body_of, draw_body, polygons
 from pin_metaik.stewart.design import Designed
@@ -21,9 +23,35 @@ from pin_metaik.stewart.workspace import Workspace
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+FORMATS = (".png", ".svg", ".pdf")
 STEEL, PLATE, ROD = "#4a4f57", "#e07b1a", "#2f6fb0"
 TAG = {"boxstyle": "circle,pad=0.15", "facecolor": "white", "edgecolor": STEEL, "linewidth": 0.6}
 VIEW = {"elev": 18.0, "azim": -60.0}
+
+
+def need_plots() -> None:
+    """Make sure that pictures can be drawn, before anything is worked out for one.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+    """
+    if find_spec("matplotlib") is None:
+        raise MissingExtra("a picture", "plots")
+
+
+@checked
+def picture_file(path: str | Path) -> Path:
+    """The path of a picture that can be written, before anything is worked out for it.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+        InvalidSetting: Its ending is none of a picture.
+        CannotWrite: It cannot be written.
+    """
+    need_plots()
+    if Path(path).suffix.lower() not in FORMATS:
+        raise InvalidSetting(f"a picture ends in {', '.join(FORMATS)}, got {str(path)!r}")
+    return writable(path)
 
 
 @checked
@@ -54,6 +82,7 @@ def draw_into(
     Raises:
         InvalidTarget: Not a pose.
     """
+    _need_figure(figure)
     unit = mechanism.unit
     scale = 1.0 / mechanism.metres
     T = as_poses(_middle(mechanism, workspace) if pose is None else pose)[0]
@@ -91,17 +120,30 @@ def draw_history(designed: Designed) -> Figure:
 
 @checked
 def save_picture(figure: Figure, path: str | Path) -> Path:
-    """Write a figure to a file; the ending says the format (.png, .svg, .pdf)."""
-    path = Path(path)
+    """Write a figure to a file; the ending says the format (.png, .svg, .pdf).
+
+    Raises:
+        InvalidSetting: Its ending is none of a picture.
+        CannotWrite: It cannot be written.
+    """
+    _need_figure(figure)
+    path = picture_file(path)
     figure.savefig(path, dpi=130)
     return path
 
 
+def _need_figure(figure: object) -> None:
+    """Raise InvalidSetting for what is no figure of matplotlib's; without matplotlib there is none."""
+    need_plots()
+    from matplotlib.figure import Figure
+
+    instance(Figure, figure=figure)
+
+
 def _figure(size: tuple[float, float]) -> Figure:
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtra("a picture", "plots") from None
+    need_plots()
+    from matplotlib.figure import Figure
+
     return Figure(figsize=size, layout="constrained")
 
 

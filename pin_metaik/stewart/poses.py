@@ -38,7 +38,7 @@ def as_poses(poses: PoseLike) -> Array:
     """
     try:
         array = np.array(poses, dtype=np.float64, order="C")
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidTarget(f"poses are pin.SE3 or 4x4 matrices, got {type(poses).__name__}") from None
     if array.ndim == 2:
         array = array[None]

@@ -16,6 +16,7 @@ from math import pi
 from pathlib import Path
 
 from pin_metaik.arguments import checked
+from pin_metaik.output import writable
 from pin_metaik.stewart.mechanism import Mechanism
 
 MASS = 1.0  # kg
@@ -65,8 +66,12 @@ def to_urdf(mechanism: Mechanism) -> str:
 
 @checked
 def save_urdf(mechanism: Mechanism, path: str | Path) -> Path:
-    """Write the URDF of a mechanism to a file."""
-    path = Path(path)
+    """Write the URDF of a mechanism to a file.
+
+    Raises:
+        CannotWrite: It cannot be written.
+    """
+    path = writable(path)
     path.write_text(to_urdf(mechanism), encoding="utf-8", newline="\n")
     return path
 

@@ -12,6 +12,7 @@ from typing import Any
 from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize import ALGORITHMS, Metaheuristic, make
+from pin_metaik.output import writable
 from pin_metaik.stewart.grid import Grid
 from pin_metaik.stewart.limits import LegLimits
 from pin_metaik.stewart.mechanism import Mechanism
@@ -28,8 +29,9 @@ def save_mechanism(mechanism: Mechanism, path: str | Path) -> Path:
 
     Raises:
         InvalidSetting: It is designed by a metaheuristic that has no name.
+        CannotWrite: It cannot be written.
     """
-    path = Path(path)
+    path = writable(path)
     path.write_text(to_toml(mechanism), encoding="utf-8", newline="\n")
     return path
 

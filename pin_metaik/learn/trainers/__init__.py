@@ -6,7 +6,7 @@ from time import perf_counter
 
 import numpy as np
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.learn.arrays import Array
 from pin_metaik.learn.network import Network
@@ -66,6 +66,8 @@ def train(
         InvalidSetting: Fewer than one iteration, or fewer data than weights.
     """
     trainer = make_trainer(trainer)
+    X, w = array("X", X, "n", network.inputs), array("w", w, network.count)
+    y = array("y", y, len(X))
     if iterations < 1:
         raise InvalidSetting(f"iterations must be at least 1, not {iterations!r}")
     if len(X) < network.count:

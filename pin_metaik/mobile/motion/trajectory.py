@@ -11,10 +11,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.motion.turn import clothoid
 from pin_metaik.mobile.paths.path import write_table
+from pin_metaik.output import writable
+from pin_metaik.optimize.settings import MANY
 from pin_metaik.optimize.space import Array
 
 SAMPLES = 0.02  # s
@@ -87,6 +89,8 @@ class Trajectory:
     """
 
     def __init__(self, phases: Sequence[Phase], start: tuple[float, float, float]) -> None:
+        array("phases", [tuple(phase) for phase in phases] or np.empty((0, 4)), "p", 4)
+        array("start", start, 3)
         self.phases = tuple(phases)
         self.start = start
         self._begins = np.cumsum([0.0, *(phase.duration for phase in phases)])
@@ -110,7 +114,7 @@ class Trajectory:
     @checked
     def at(self, t: ArrayLike) -> Samples:
         """States at times t (n,) in s, by the closed form; before the start and after the end it stands still."""
-        times = np.clip(np.atleast_1d(np.asarray(t, dtype=float)), 0.0, self.duration)
+        times = np.clip(np.atleast_1d(array("t", t, "...")).ravel(), 0.0, self.duration)
         if not self.phases:
             x, y, heading = (np.full(times.shape, s) for s in self.start)
             return Samples(times, x, y, heading, *np.zeros((4, len(times))))
@@ -128,8 +132,8 @@ class Trajectory:
         Raises:
             InvalidSetting: A dt that is not above zero.
         """
-        if not dt > 0:
-            raise InvalidSetting(f"dt must be above 0 s, not {dt!r}")
+        if not dt > 0 or self.duration > MANY * dt:
+            raise InvalidSetting(f"dt is above 0 s and not a {MANY:,}th of {self.duration:g} s, got {dt!r}")
         return self.at(np.union1d(np.arange(0.0, self.duration, dt), self._begins))
 
     @checked
@@ -140,7 +144,7 @@ class Trajectory:
     @checked
     def write_json(self, file: str | File, dt: float = SAMPLES) -> None:
         """Write the samples as JSON: an object with one array for each column."""
-        File(file).write_text(json.dumps(self.as_dict(dt), allow_nan=False), encoding="utf-8")
+        writable(file).write_text(json.dumps(self.as_dict(dt), allow_nan=False), encoding="utf-8")
 
     @checked
     def as_dict(self, dt: float = SAMPLES) -> dict[str, list[float]]:

@@ -10,8 +10,9 @@ from pathlib import Path as File
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import array, checked, shown
 from pin_metaik.errors import InvalidGeometry
+from pin_metaik.output import writable
 from pin_metaik.optimize.space import Array
 
 
@@ -73,7 +74,7 @@ class Path:
 def write_table(file: str | File, header: Iterable[str], rows: Array) -> None:
     """Write a table (n, c) as CSV with all digits."""
     lines = [",".join(header), *(",".join(map(repr, row)) for row in rows.tolist())]
-    File(file).write_text("\n".join(lines) + "\n", encoding="utf-8")
+    writable(file).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def _offset(a: Array, b: Array, point: Array) -> tuple[float, bool]:
@@ -86,10 +87,7 @@ def _offset(a: Array, b: Array, point: Array) -> tuple[float, bool]:
 
 
 def _points(values: ArrayLike) -> Array:
-    try:
-        points = np.array(values, dtype=float)
-    except (TypeError, ValueError):
-        points = np.empty(0)
-    if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2 or not np.isfinite(points).all():
-        raise InvalidGeometry(f"a path is at least two points (x, y), finite; got {values!r}")
+    points = array("the points of a path", values, "n", 2, error=InvalidGeometry).copy()
+    if len(points) < 2:
+        raise InvalidGeometry(f"a path is at least two points (x, y), finite; got {shown(values)}")
     return points

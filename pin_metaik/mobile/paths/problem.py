@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import array, checked
 from pin_metaik.mobile.paths.exact import shortest_path
 from pin_metaik.mobile.paths.homotopy import shortest_paths
 from pin_metaik.mobile.paths.path import Path
@@ -16,7 +16,7 @@ from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.growth import Join
 from pin_metaik.mobile.world.scene import Scene
 from pin_metaik.optimize import Box
-from pin_metaik.optimize.settings import within
+from pin_metaik.optimize.settings import few, within
 from pin_metaik.optimize.space import Array
 
 
@@ -72,9 +72,11 @@ class PathProblem:
     @checked
     def box(self, via: int) -> Box:
         """Where via points may lie: the workspace inside its walls, once for each."""
+        few("via", via)
         x_min, y_min, x_max, y_max = self.space.box
         return Box(np.tile([x_min, y_min], via), np.tile([x_max, y_max], via))
 
     def through(self, x: Array) -> Path:
         """The path through via points (2 n,)."""
-        return Path(np.vstack((self.scene.start, x.reshape(-1, 2), self.scene.goal)))
+        x = array("x", x, "2 n")
+        return Path(np.vstack((self.scene.start, x[: x.size // 2 * 2].reshape(-1, 2), self.scene.goal)))

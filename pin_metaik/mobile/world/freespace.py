@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import shapely
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import array, checked
 from pin_metaik.mobile.errors import Blocked
 from pin_metaik.mobile.world.growth import Join, grow
 from pin_metaik.mobile.world.scene import Point, Scene
@@ -98,10 +98,16 @@ class FreeSpace:
 
     def holds(self, path: Array) -> bool:
         """Whether a path (n, 2) is free of collisions: the exact test, on the whole of it and not on samples."""
+        path = array("path", path, "n", 2, finite=False)
+        if len(path) < 2:
+            raise InvalidGeometry(f"a path has at least two points, got {len(path)}")
         return bool(np.isfinite(path).all()) and not self.core.intersects(shapely.LineString(path))
 
     def distance(self, path: Array) -> float:
         """Distance of a path (n, 2) from the nearest obstacle as given, not grown; inf without obstacles."""
+        path = array("path", path, "n", 2)
+        if len(path) < 2:
+            raise InvalidGeometry(f"a path has at least two points, got {len(path)}")
         return float(shapely.LineString(path).distance(self.solid)) if self.scene.obstacles else float("inf")
 
     @checked

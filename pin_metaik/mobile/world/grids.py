@@ -12,7 +12,7 @@ import shapely
 from numpy.typing import ArrayLike, NDArray
 from shapely import affinity
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidGeometry
 
 PINCH = 0.01  # cells; where two occupied cells touch at a corner only, a square this wide closes the gap
@@ -90,10 +90,7 @@ def grid_of(
     Raises:
         InvalidGeometry: Not a table of numbers, or cells without width.
     """
-    try:
-        numbers = np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
-        raise InvalidGeometry("an occupancy grid is a table of numbers") from None
+    numbers = array("an occupancy grid", values, "rows", "columns", error=InvalidGeometry, finite=False)
     unknown = ~(numbers >= 0)
     return OccupancyGrid(np.where(unknown, unknown_blocks, numbers > threshold), resolution, origin)
 
