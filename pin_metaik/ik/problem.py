@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import NamedTuple, cast
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import FrameNotFound, InvalidSetting, InvalidTarget
@@ -38,6 +38,9 @@ class Verdict(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class IKProblem:
     """Targets for the frames of a chain, inside limits, and perhaps in a world full of obstacles.
+
+    Joints that the chain holds are where its reference has them, but for ``verdict`` and ``accepts``, which judge whole
+    configurations; ``problem.at(q)`` is the problem with those joints elsewhere.
 
     Attributes:
         chain: The chain.
@@ -82,6 +85,11 @@ class IKProblem:
             targets = _match(chain.frames, targets)
         tasks = targets[0].task[None] if len(targets) == 1 else np.array([one.task for one in targets])
         return IKProblem(chain, targets, tasks, _rows(tuple([one.counts for one in targets])), world)
+
+    def at(self, q: ArrayLike) -> IKProblem:
+        """The same problem, with the joints that the chain holds where q (nq,) has them; see ``Chain.at``."""
+        chain = self.chain.at(q)
+        return self if chain is self.chain else replace(self, chain=chain)
 
     @property
     def limits(self) -> Limits:

@@ -78,7 +78,8 @@ def solve_ik_all(
     Args:
         chain: The joints to move and the frames to place.
         target: As for ``solve_ik``.
-        q0: (nq,) configuration the solutions are ordered by; default: the chain's reference.
+        q0: (nq,) configuration the solutions are ordered by, and that has the joints outside the chain and the locked
+            ones; default: the chain's reference.
         limit: Solutions to stop at; what ends the search on redundant chains.
         apart: rad or m by which some coordinate of two solutions must differ.
         budget: Evaluations (and seconds, which are not reproducible) that may be spent.
@@ -96,6 +97,7 @@ def solve_ik_all(
     if budget.evaluations is None:
         raise InvalidBudget("collecting solutions needs a budget of evaluations: Budget(evaluations=...)")
     began = perf_counter()
+    chain = chain if q0 is None else chain.at(q0)
     problem = IKProblem.of(chain, target, world)
     base = chain.reference if q0 is None else chain.configuration(q0)
     x0 = chain.x(base)

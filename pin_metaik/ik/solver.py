@@ -90,6 +90,8 @@ class IKSolver:
         ``first`` is what the fast lane came to, if it has tried the first starts already.
         """
         began = perf_counter()
+        if q0 is not None:
+            problem = problem.at(q0)
         chain = problem.chain
         base = chain.reference if q0 is None else chain.configuration(q0)
         x0 = chain.x(base)

@@ -44,6 +44,15 @@ class Motion:
     shift: float
 
 
+def leader_of(model: pin.Model, joint: int) -> int:
+    """Id of the joint that a joint mimics, or its own."""
+    kind = model.joints[joint]
+    if kind.nq:
+        return joint
+    # A mimic joint is a scaled copy of the coordinate at the same index.
+    return next(j for j in range(1, model.njoints) if model.joints[j].nv and model.joints[j].idx_v == kind.idx_v)
+
+
 def motion_of(model: pin.Model, joint: int) -> Motion:
     """Axis and kind of a joint with one degree of freedom, read from its motion subspace S.
 
@@ -51,9 +60,8 @@ def motion_of(model: pin.Model, joint: int) -> Motion:
         UnsupportedJoint: If it has more than one degree of freedom, or turns and slides at once.
     """
     kind = model.joints[joint]
-    driver, scale, shift = joint, 1.0, 0.0
-    if kind.nq == 0:  # a mimic joint is a scaled copy of the coordinate at the same index
-        driver = next(j for j in range(1, model.njoints) if model.joints[j].nv and model.joints[j].idx_v == kind.idx_v)
+    driver, scale, shift = leader_of(model, joint), 1.0, 0.0
+    if driver != joint:
         mimic = kind.extract()
         scale, shift = float(mimic.scaling), float(mimic.offset)
     elif kind.nv != 1:
@@ -104,15 +112,25 @@ def matrix_of(flat: NDArray[np.float64]) -> NDArray[np.float64]:
     return matrix
 
 
+def base_moves(before: Paths, after: Paths) -> NDArray[np.float64] | None:
+    """How each tip's path is moved as a whole, (T, 4, 4), if the two differ in nothing but where the paths begin."""
+    first = before.ends[:-1]
+    rest = np.delete(before.joints, first, axis=0), np.delete(after.joints, first, axis=0)
+    if not (np.array_equal(*rest) and np.array_equal(before.tips, after.tips)):
+        return None
+    ways = zip(before.joints[first], after.joints[first], strict=True)
+    return np.array([matrix_of(there) @ np.linalg.inv(matrix_of(here)) for here, there in ways])
+
+
 def lay_paths(
     model: pin.Model,
+    data: pin.Data,
     frames: Sequence[int],
     columns: dict[int, int],
     motions: dict[int, Motion],
     reference: NDArray[np.float64],
 ) -> Paths:
     """Walk from the world to each frame; joints without a column are folded in where ``reference`` (nq,) has them."""
-    data = model.createData()
     pin.forwardKinematics(model, data, reference)
     joints, wiring, ends, tips = [], [], [0], []
     for frame in frames:

@@ -9,7 +9,7 @@ with a spherical wrist this is the distance of the wrist from the shoulder.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
@@ -46,6 +46,10 @@ class Reach:
     end: NDArray[np.float64]
     least: float
     most: float
+
+    def moved(self, move: NDArray[np.float64]) -> Reach:
+        """The same bounds for a chain moved as a whole by (4, 4)."""
+        return replace(self, anchor=move[:3, :3] @ self.anchor + move[:3, 3])
 
     @property
     def array(self) -> NDArray[np.float64]:
