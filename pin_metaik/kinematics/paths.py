@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from pin_metaik.errors import UnsupportedJoint
 
+RIGID = 1e-12  # of R'R, by how much a rotation of double precision may miss the identity
+
 
 @dataclass(frozen=True, eq=False)
 class Paths:
@@ -95,8 +97,17 @@ def _constant_subspace(model: pin.Model, joint: int) -> NDArray[np.float64]:
 
 
 def turned_to_z(axis: NDArray[np.float64]) -> pin.SE3:
-    """The rotation whose z axis is ``axis`` (3,), by the shortest turn."""
-    return pin.SE3(pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), axis).matrix(), np.zeros(3))
+    """A rotation whose z axis is ``axis`` (3,), to the last digit whatever the axis.
+
+    By the shortest turn from z, R = 1 + [v] + [v]^2 / (1 + z . axis) with v = z x axis (Rodrigues); for an axis that
+    points down, from -z after half a turn about x: the divisor then is never below 1.
+    """
+    x, y, z = (float(value) for value in axis / np.linalg.norm(axis))
+    down = np.copysign(1.0, z)
+    k = 1.0 / (1.0 + abs(z))
+    columns = (1.0 - x * x * k, -x * y * k, -down * x), (-x * y * k, 1.0 - y * y * k, -down * y), (x, y, z)
+    rotation = np.column_stack(columns) * [1.0, down, 1.0]
+    return pin.SE3(rotation, np.zeros(3))
 
 
 def flat(placement: pin.SE3) -> NDArray[np.float64]:
@@ -113,13 +124,18 @@ def matrix_of(flat: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def base_moves(before: Paths, after: Paths) -> NDArray[np.float64] | None:
-    """How each tip's path is moved as a whole, (T, 4, 4), if the two differ in nothing but where the paths begin."""
+    """How each tip's path is moved as a whole, (T, 4, 4), if the two differ in nothing but where the paths begin.
+
+    None if they differ in more, or are moved by what is not quite a rotation.
+    """
     first = before.ends[:-1]
     rest = np.delete(before.joints, first, axis=0), np.delete(after.joints, first, axis=0)
     if not (np.array_equal(*rest) and np.array_equal(before.tips, after.tips)):
         return None
     ways = zip(before.joints[first], after.joints[first], strict=True)
-    return np.array([matrix_of(there) @ np.linalg.inv(matrix_of(here)) for here, there in ways])
+    moves = np.array([matrix_of(there) @ np.linalg.inv(matrix_of(here)) for here, there in ways])
+    turns = moves[:, :3, :3]
+    return moves if np.abs(turns.transpose(0, 2, 1) @ turns - np.eye(3)).max() < RIGID else None
 
 
 def lay_paths(
