@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from pin_metaik.errors import UnsupportedJoint
 
+UP = np.array([0.0, 0.0, 1.0])
+HALF_ABOUT_X = np.array([1.0, -1.0, -1.0])  # multiplied into the columns
 RIGID = 1e-12  # of R'R, by how much a rotation of double precision may miss the identity
 
 
@@ -97,17 +99,14 @@ def _constant_subspace(model: pin.Model, joint: int) -> NDArray[np.float64]:
 
 
 def turned_to_z(axis: NDArray[np.float64]) -> pin.SE3:
-    """A rotation whose z axis is ``axis`` (3,), to the last digit whatever the axis.
+    """A rotation whose z axis is ``axis`` (3,), exact but for rounding.
 
-    By the shortest turn from z, R = 1 + [v] + [v]^2 / (1 + z . axis) with v = z x axis (Rodrigues); for an axis that
-    points down, from -z after half a turn about x: the divisor then is never below 1.
+    It is the shortest turn from z, or, for an axis that points down, from -z after half a turn about x: a turn by more
+    than a right angle, made from the two vectors, would lose digits, near -z half of them.
     """
-    x, y, z = (float(value) for value in axis / np.linalg.norm(axis))
-    down = np.copysign(1.0, z)
-    k = 1.0 / (1.0 + abs(z))
-    columns = (1.0 - x * x * k, -x * y * k, -down * x), (-x * y * k, 1.0 - y * y * k, -down * y), (x, y, z)
-    rotation = np.column_stack(columns) * [1.0, down, 1.0]
-    return pin.SE3(rotation, np.zeros(3))
+    down = bool(axis[2] < 0.0)
+    turn = pin.Quaternion.FromTwoVectors(UP, -axis if down else axis).matrix()
+    return pin.SE3(turn * HALF_ABOUT_X if down else turn, np.zeros(3))
 
 
 def flat(placement: pin.SE3) -> NDArray[np.float64]:
