@@ -117,6 +117,8 @@ def _layers(problems: list[IKProblem], base: NDArray[np.float64], near: bool, rn
         fresh = np.concatenate([problem.near(FRESH), drawn(problem.chain, rng, index, FRESH)])
         layer = _widened(problem, base, np.empty((0, len(x0))), followed, followed=True)
         layer = _widened(problem, base, layer, fresh)
+        if not len(layer):  # nothing in the middle of the tolerances
+            layer = _widened(problem.whole, base, _widened(problem.whole, base, layer, followed, followed=True), fresh)
         layers.append(layer)
         followed = layer if len(layer) else followed
     for i in range(len(problems) - 2, -1, -1):  # what only a later pose found may have begun earlier

@@ -45,7 +45,7 @@ class IKProblem:
     Attributes:
         chain: The chain.
         targets: One for each of its frames, in the chain's order.
-        tasks: (T, 26) the targets as the kernels take them.
+        tasks: (T, 26) the targets as the kernels take them; a radius as a tolerance is aimed at in its middle.
         rows: (m, 2) the (frame, axis) pairs that count: three translations, three rotations, less the free ones.
         world: What must not collide; ``None``: nothing is checked.
     """
@@ -90,6 +90,20 @@ class IKProblem:
         """The same problem, with the joints that the chain holds where q (nq,) has them; see ``Chain.at``."""
         chain = self.chain.at(q)
         return self if chain is self.chain else replace(self, chain=chain)
+
+    @cached_property
+    def whole(self) -> IKProblem:
+        """The same problem aimed at all that is accepted: what is inside a tolerance is no error, nor cost.
+
+        An answer in the middle of the tolerances is a better one, and looked for first. Where the middle is out of
+        reach, descents towards it end at a compromise that may be outside; these end inside.
+        """
+        return replace(self, tasks=np.array([target.whole_task for target in self.targets]))
+
+    @property
+    def loose(self) -> bool:
+        """Whether a target allows more than the default tolerance, so that aiming at its middle may be in vain."""
+        return any(target.loose for target in self.targets)
 
     @property
     def limits(self) -> Limits:
