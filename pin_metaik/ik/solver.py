@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import islice
 from time import perf_counter
 
 import numpy as np
@@ -92,10 +93,12 @@ class IKSolver:
         ``first`` is what the fast lane came to, if it has tried the first starts already.
         """
         began = perf_counter()
+        if q0 is not None:
+            problem = problem.at(q0)
         chain = problem.chain
         base = chain.reference if q0 is None else chain.configuration(q0)
         x0 = chain.x(base)
-        ledger = Ledger(problem, self.budget, began, x0)
+        ledger = Ledger(problem.whole if problem.loose else problem, self.budget, began, x0)
         if first is not None:
             ledger.add(first)
         try:
@@ -106,7 +109,7 @@ class IKSolver:
             if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
                 self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
             if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None:
-                ledger.add(self._refiner.settle(problem, ledger.x, ledger.left()))
+                ledger.add(self._refiner.settle(ledger.problem, ledger.x, ledger.left()))
         except KeyboardInterrupt:
             ledger.interrupted = True
         q = base.copy()
@@ -136,7 +139,7 @@ class IKSolver:
         """
         measure = SELECT[self.select]
         budget = Budget(evaluations=max(1, ledger.left(CHOICE_SHARE)), seconds=self.budget.seconds)
-        found, _, spent = collect(problem, x0, rng, limit=CHOICE, apart=1e-2, budget=budget)
+        problem, found, _, spent = collect(problem, x0, rng, limit=CHOICE, apart=1e-2, budget=budget)
         ledger.spent += spent
         if problem.world is not None:
             found = found[[problem.accepts(q) for q in problem.chain.q(found, base)]]
@@ -163,18 +166,25 @@ class IKSolver:
     def _restart(
         self, problem: IKProblem, refiner: Refiner, x0: NDArray[np.float64], rng: Rng, ledger: Ledger, tried: int
     ) -> None:
-        """Refine from x0 (n,), then from random starts; the automatic solver also from an atlas of the chain."""
+        """Refine from x0 (n,), then from random starts; the automatic solver also from an atlas of the chain.
+
+        The first batch, or all but the last, aims at the middle of the tolerances; the others at all that is accepted.
+        """
         share = 1.0 - RESERVE if self._seeder is None else RESTART_SHARE
-        refine = refiner.refine
-        if self._seeder is not None and isinstance(refiner, DLS) and not tried:
-            refine = refiner.refine_anywhere
-        if tried and (ledger.over(share) or problem.gap > 0.0):
-            return
-        for starts in start_batches(problem.chain, x0, rng, self.starts, tried):
-            ledger.add(refine(problem, starts, ledger.left(share)))
-            if ledger.over(share) or problem.gap > 0.0:
-                return
+        if problem.loose:
+            rounds = [(problem, tried, 1 - tried, share), (problem.whole, 0, None, share)]
+        else:
+            last = 1 if self.starts is None else 0  # starts that were counted are not counted twice
+            rounds = [(problem, tried, None, share), (problem.whole, 0, last, share + RESERVE)]
+        for aim, skipped, batches, most in rounds:
             refine = refiner.refine
+            if self._seeder is not None and isinstance(refiner, DLS) and not skipped:
+                refine = refiner.refine_anywhere
+            for starts in islice(start_batches(problem.chain, x0, rng, self.starts, skipped), batches):
+                if problem.gap > 0.0 or ledger.over(most):
+                    break
+                ledger.add(refine(aim, starts, ledger.left(most)))
+                refine = refiner.refine
 
     def _seed(
         self,
@@ -190,12 +200,12 @@ class IKSolver:
         while True:
             budget = ledger.slice(share)
             found = minimize(
-                problem.costs, problem.box, seeder, budget, generator, seeds=seeds, trace=self.trace, keep=ELITE
+                ledger.problem.costs, problem.box, seeder, budget, generator, seeds=seeds, trace=self.trace, keep=ELITE
             )
             ledger.add_search(found)
             if self._refiner is None:
                 return
-            ledger.add(self._refiner.refine(problem, found.elite, ledger.left(1.0 - RESERVE)))
+            ledger.add(self._refiner.refine(ledger.problem, found.elite, ledger.left(1.0 - RESERVE)))
             if ledger.over(1.0 - RESERVE) or problem.gap > 0.0:
                 return
             seeds = None

@@ -17,7 +17,7 @@ from typing import TypeAlias
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, allocating, inline, shared
-from pin_metaik.kinematics.kernels import copy, forward, jacobian, pose_error, residual
+from pin_metaik.kinematics.kernels import along_ball, beyond_ball, copy, forward, jacobian, pose_error, residual
 
 PATIENCE = 4  # steps that must bring the squared error below `progress`, or the start is given up
 DAMPING_FLOOR = 1e-9  # what is left of the damping at a solution
@@ -54,15 +54,22 @@ def evaluate(arm: Arm, tasks: Floats, rows: Ints, x: Floats, work: Work) -> tupl
         forward(joints, wiring, ends[t], ends[t + 1], tips[t], task[:12], x, axes, origins, pose)
         pose_error(pose, error)
         position, orientation = residual(task, error, r6)
+        if task[12] < 0.0:
+            position = beyond_ball(task, error, 0, r6)
+        if task[15] < 0.0:
+            orientation = beyond_ball(task, error, 3, r6)
         solved = solved and position <= task[24] * task[24] and orientation <= task[25] * task[25]
         J6[:, :] = 0.0
-        rotated = task[15] > 0.0 or task[16] > 0.0 or task[17] > 0.0
+        rotated = task[15] != 0.0 or task[16] != 0.0 or task[17] != 0.0
         jacobian(joints, wiring, ends[t], ends[t + 1], task, pose, axes, origins, error, rotated, J6)
+        for part in range(0, 6, 3):
+            if task[12 + part] < 0.0:
+                along_ball(task, error, part, J6)
         while m < rows.shape[0] and rows[m, 0] == t:
             j = rows[m, 1]
             r[m] = r6[j]
             square += r6[j] * r6[j]
-            counts = r6[j] != 0.0 or task[12 + j] == 0.0
+            counts = r6[j] != 0.0 or task[12 + j] <= 0.0
             for c in range(J6.shape[0]):
                 J[c, m] = J6[c, j] if counts else 0.0
             m += 1

@@ -11,6 +11,7 @@ Arrays every kernel takes (made by ``Chain`` and ``IKProblem``; S joints on all 
 * ``ends`` (T + 1,): joints ``ends[t]:ends[t + 1]`` lead from the world to tip t; paths may share columns.
 * ``tips`` (T, 12): placement of each tip in its last joint frame.
 * ``tasks`` (T, 26): the world in the target frame (12), slack per axis (6), weight per axis (6), tolerances (m, rad).
+  Where the slack of position or of orientation is below 0, it is minus the radius of a ball for the three axes at once.
 * ``rows`` (m, 2): which (tip, axis) pairs count: slack finite.
 
 Seen from the target frame, a solved tip stands at the identity: position error p, orientation error log(R), and no
@@ -163,6 +164,31 @@ def residual(task: Floats, error: Floats, r: Floats) -> tuple[float, float]:
     return position, orientation
 
 
+@inline
+def beyond_ball(task: Floats, error: Floats, part: int, r: Floats) -> float:
+    """Weighted position (part 0) or orientation (part 3) beyond its ball, into r (6,); returns its size, squared."""
+    x, y, z = error[part], error[part + 1], error[part + 2]
+    size = math.sqrt(x * x + y * y + z * z)
+    outside = float(max(size + task[12 + part], 0.0))
+    scale = outside / size if outside > 0.0 else 0.0
+    for j in range(part, part + 3):
+        r[j] = scale * task[18 + j] * error[j]
+    return outside * outside
+
+
+@inline
+def along_ball(task: Floats, error: Floats, part: int, J: Floats) -> None:
+    """Turn the Jacobian J (n, 6) of an error into that of the error beyond its ball: the way along it shrinks."""
+    x, y, z = error[part], error[part + 1], error[part + 2]
+    size = math.sqrt(x * x + y * y + z * z)
+    inside = min(-task[12 + part] / size, 1.0) if size > 0.0 else 1.0
+    across = 1.0 - inside
+    for c in range(J.shape[0]):
+        outward = (x * J[c, part] + y * J[c, part + 1] + z * J[c, part + 2]) * inside / (size * size)
+        for j in range(part, part + 3):
+            J[c, j] = across * J[c, j] + outward * error[j] if across > 0.0 else 0.0
+
+
 @shared
 def jacobian(
     joints: Floats,
@@ -236,5 +262,8 @@ def costs(joints: Floats, wiring: Ints, ends: Ints, tips: Floats, tasks: Floats,
             forward(joints, wiring, ends[t], ends[t + 1], tips[t], task[:12], X[k], axes, origins, pose)
             pose_error(pose, error)
             residual(task, error, r)
+            for part in range(0, 6, 3):
+                if task[12 + part] < 0.0:
+                    beyond_ball(task, error, part, r)
             total += math.sqrt(r[0] ** 2 + r[1] ** 2 + r[2] ** 2) + math.sqrt(r[3] ** 2 + r[4] ** 2 + r[5] ** 2)
         out[k] = total
