@@ -138,7 +138,11 @@ class Door:
 
     def call(self, arguments: dict[str, Any]) -> object:
         """Call it; of what comes back lazily, take all."""
-        function = self.function if self.function is not None else getattr(OWNERS[self.name if self.name in OWNERS else self.owner](), self.attribute)
+        function = (
+            self.function
+            if self.function is not None
+            else getattr(OWNERS[self.name if self.name in OWNERS else self.owner](), self.attribute)
+        )
         result = function(**arguments)
         return list(result) if inspect.isgenerator(result) else result
 
@@ -191,7 +195,7 @@ class Fault:
     trace: str
 
     def __str__(self) -> str:
-        return f"{self.door}({self.changed}): {self.error}"
+        return f"{self.door}({self.changed}): {self.error.splitlines()[0]}"
 
 
 def knock(door: Door, odd: dict[str, Any]) -> Fault | None:

@@ -124,28 +124,31 @@ def number(name: str, value: object, error: type[MetaIKError] = InvalidSetting) 
 def array(
     name: str, value: ArrayLike, *shape: int | str, error: type[MetaIKError] = InvalidSetting, finite: bool = True
 ) -> NDArray[np.float64]:
-    """An argument as an array of floats of a shape.
+    """An argument as an array of floats of a shape: itself, if it is one already.
 
     Args:
         name: What to call it.
         value: Any numbers.
-        shape: Lengths; a letter stands for any length, ``"..."`` in front for any leading axes.
+        shape: Lengths; a word stands for any length, ``"..."`` in front for any leading axes.
         error: What to raise.
         finite: Whether NaN and infinity are refused.
 
     Raises:
         MetaIKError: Of the class ``error``: not numbers, not finite, or of another shape.
     """
-    wanted = f"({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
     try:
-        numbers = np.asarray(value, dtype=float)
+        numbers = np.asarray(value, dtype=float, order="C")
     except (TypeError, ValueError, OverflowError):
-        raise error(f"{name} is numbers of shape {wanted}, got {shown(value)}") from None
-    if not _fits(numbers.shape, shape):
-        raise error(f"{name} has shape {wanted}, got shape {numbers.shape}")
-    if finite and not np.isfinite(numbers).all():
+        raise error(f"{name} is numbers of shape {_shape(shape)}, got {shown(value)}") from None
+    if numbers.shape != shape and not _fits(numbers.shape, shape):
+        raise error(f"{name} has shape {_shape(shape)}, got {numbers.shape}")
+    if finite and not math.isfinite(np.add.reduce(numbers, axis=None)) and not np.isfinite(numbers).all():
         raise error(f"{name} has finite entries, got {shown(value)}")
-    return numbers
+    return numbers if numbers.flags.writeable else numbers.copy()  # compiled loops take no others
+
+
+def _shape(shape: tuple[int | str, ...]) -> str:
+    return f"({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
 
 
 def _fits(have: tuple[int, ...], shape: tuple[int | str, ...]) -> bool:

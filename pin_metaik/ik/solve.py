@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import instance
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.ik.avoid import keep_clear
 from pin_metaik.ik.fast import solve_fast
@@ -52,9 +53,16 @@ def solve_ik(
         InvalidSetting: If the world is another model's than the chain.
     """
     solver = solver or DEFAULT_SOLVER
-    if chain.held and q0 is not None:
-        chain = chain.at(q0)
-    fast = solve_fast(chain, target, q0, solver, rng)
+    try:
+        if chain.held and q0 is not None:
+            chain = chain.at(q0)
+        fast = solve_fast(chain, target, q0, solver, rng)
+    except AttributeError:  # looking costs nothing here, and a third of the time of a quick solve before it
+        instance(Chain, chain=chain)
+        instance(IKSolver, solver=solver)
+        raise
+    if world is not None:
+        instance(CollisionWorld, world=world)
     if isinstance(fast, IKResult):
         result = fast
     else:

@@ -11,7 +11,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import checked, instance
 from pin_metaik.errors import InvalidBudget, InvalidSetting, UnknownName
 from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.nullspace import slide
@@ -93,6 +93,8 @@ class IKSolver:
         ``first`` is what the fast lane came to, if it has tried the first starts already.
         """
         began = perf_counter()
+        instance(IKProblem, problem=problem)
+        instance(Refinement | None, first=first)
         if q0 is not None:
             problem = problem.at(q0)
         chain = problem.chain

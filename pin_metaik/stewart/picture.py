@@ -10,8 +10,8 @@ import numpy as np
 
 from pin_metaik.arguments import checked, instance
 from pin_metaik.errors import InvalidSetting, MissingExtra
-from pin_metaik.output import writable
 from pin_metaik.optimize.space import Array
+from pin_metaik.output import writable
 from pin_metaik.stewart.body import body_of, draw_body, polygons
 from pin_metaik.stewart.design import Designed
 from pin_metaik.stewart.geometry import on_circle

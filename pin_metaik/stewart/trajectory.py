@@ -68,7 +68,9 @@ class Trajectory:
     @checked
     def at(self, times: ArrayLike) -> Array:
         """Poses (j, 4, 4) at times (j,) in s: between two samples along the straight line and the shortest turn."""
-        given = array("times", np.atleast_1d(array("times", times, "...", error=InvalidTarget)), "j", error=InvalidTarget)
+        given = array(
+            "times", np.atleast_1d(array("times", times, "...", error=InvalidTarget)), "j", error=InvalidTarget
+        )
         t = np.clip(given, self.times[0], self.times[-1])
         after = np.clip(np.searchsorted(self.times, t, side="right"), 1, len(self.times) - 1)
         share = (t - self.times[after - 1]) / (self.times[after] - self.times[after - 1])

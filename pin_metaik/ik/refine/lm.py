@@ -47,6 +47,7 @@ class LM:
         if self.scale is not None:
             positive("scale", self.scale)
 
+    @checked
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent."""
         return iterate(problem, starts, evaluations, self.step, self.patience)

@@ -65,6 +65,7 @@ class QP:
         if self.posture is not None and not (isinstance(self.posture, str) and self.posture == "middle"):
             object.__setattr__(self, "posture", _coordinates(self.posture))
 
+    @checked
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent.
 

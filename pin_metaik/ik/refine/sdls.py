@@ -35,6 +35,7 @@ class SDLS:
         """Raises InvalidSetting for a largest step that is not above 0."""
         positive("largest", self.largest)
 
+    @checked
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent."""
         effectors = effectors_of(problem)

@@ -95,7 +95,9 @@ class Route:
     def straights(self, V: Array, tangents: Array | None = None) -> Array:
         """Lengths (k, n + 1) left for the straights at speeds V (k, n); tangent lengths (k, n) default to ``v g``."""
         V = self._speeds(V)
-        alpha = np.pad(V * self.g if tangents is None else array("tangents", tangents, *V.shape, finite=False), ((0, 0), (1, 1)))
+        alpha = np.pad(
+            V * self.g if tangents is None else array("tangents", tangents, *V.shape, finite=False), ((0, 0), (1, 1))
+        )
         return np.asarray(self.lengths - alpha[:, :-1] - alpha[:, 1:])
 
     def times(self, V: Array, tangents: Array | None = None) -> Array:

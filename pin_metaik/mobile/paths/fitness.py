@@ -112,7 +112,9 @@ def make_fitness(fitness: str | Fitness) -> Fitness:
     """
     if not isinstance(fitness, str):
         if isinstance(fitness, type) or not callable(getattr(fitness, "on", None)):
-            raise InvalidSetting(f"not a fitness: {shown(fitness)}; give a name or an object with on(space, start, goal)")
+            raise InvalidSetting(
+                f"not a fitness: {shown(fitness)}; give a name or an object with on(space, start, goal)"
+            )
         return fitness
     if fitness not in FITNESSES:
         raise UnknownName("fitness", fitness, FITNESSES)

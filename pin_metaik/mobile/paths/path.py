@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked, shown
 from pin_metaik.errors import InvalidGeometry
-from pin_metaik.output import writable
 from pin_metaik.optimize.space import Array
+from pin_metaik.output import writable
 
 
 @dataclass(frozen=True, eq=False)

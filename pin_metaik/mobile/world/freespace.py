@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.errors import InvalidGeometry
 from pin_metaik.mobile.errors import Blocked
 from pin_metaik.mobile.world.growth import Join, grow
 from pin_metaik.mobile.world.scene import Point, Scene
@@ -98,17 +99,13 @@ class FreeSpace:
 
     def holds(self, path: Array) -> bool:
         """Whether a path (n, 2) is free of collisions: the exact test, on the whole of it and not on samples."""
-        path = array("path", path, "n", 2, finite=False)
-        if len(path) < 2:
-            raise InvalidGeometry(f"a path has at least two points, got {len(path)}")
-        return bool(np.isfinite(path).all()) and not self.core.intersects(shapely.LineString(path))
+        line = _line(path)
+        return bool(np.isfinite(path).all()) and not self.core.intersects(line)
 
     def distance(self, path: Array) -> float:
         """Distance of a path (n, 2) from the nearest obstacle as given, not grown; inf without obstacles."""
-        path = array("path", path, "n", 2)
-        if len(path) < 2:
-            raise InvalidGeometry(f"a path has at least two points, got {len(path)}")
-        return float(shapely.LineString(path).distance(self.solid)) if self.scene.obstacles else float("inf")
+        line = _line(path)
+        return float(line.distance(self.solid)) if self.scene.obstacles else float("inf")
 
     @checked
     def check(self, role: str, point: Point) -> None:
@@ -125,6 +122,18 @@ class FreeSpace:
             free = shapely.get_coordinates(shapely.shortest_line(self.region, place))[0]
             nearest = (float(free[0]), float(free[1]))
         raise Blocked(role, point, self.clearance, nearest)
+
+
+def _line(path: Array) -> shapely.LineString:
+    """A path (n, 2) that somebody gave, n >= 2.
+
+    Raises:
+        InvalidGeometry: It is none.
+    """
+    points = array("path", path, "n", 2, error=InvalidGeometry, finite=False)
+    if len(points) < 2:
+        raise InvalidGeometry(f"a path has at least two points, got {len(points)}")
+    return shapely.LineString(points)
 
 
 def _extent(box: tuple[float, float, float, float]) -> float:
