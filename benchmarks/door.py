@@ -38,6 +38,9 @@ from pin_metaik.errors import MetaIKError
 LATE = 5.0  # s; a call that takes longer hangs
 ROOM = 12 << 30  # bytes of address space: what asks for more gets a MemoryError instead of the machine
 
+INNER = {(f"refine.{kind}", step) for kind in ("LM", "QP", "SDLS", "Newton", "Transpose") for step in ("step", "steps")}
+"""Methods that the loop of a refiner calls thousands of times, and nobody else: they trust it."""
+
 ODD: tuple[Callable[[], Any], ...] = (
     lambda: None,
     lambda: True,
@@ -177,7 +180,7 @@ def _of(name: str, thing: Any) -> Iterator[Door]:
         yield Door(name, "", "", thing)
     for attribute, member in vars(thing).items():
         fields = getattr(thing, "__dataclass_fields__", {})
-        if attribute in fields or (attribute.startswith("_") and attribute != "__call__"):
+        if attribute in fields or (name, attribute) in INNER or (attribute.startswith("_") and attribute != "__call__"):
             continue
         if isinstance(member, (staticmethod, classmethod)):
             yield Door(f"{name}.{attribute}", "", "", getattr(thing, attribute))
@@ -201,16 +204,23 @@ class Fault:
 def knock(door: Door, odd: dict[str, Any]) -> Fault | None:
     """Call a door with some arguments replaced; None for a result or a ``MetaIKError``."""
     changed = ", ".join(f"{name}={_shown(value)}" for name, value in odd.items())
+    error = _raised(door, odd)
+    if isinstance(error, Hangs):
+        error = _raised(door, odd)  # the first time it may have compiled
+    if error is None or isinstance(error, MetaIKError):
+        return None
+    said = f"hangs for {LATE:g} s" if isinstance(error, Hangs) else f"{type(error).__name__}: {error}"
+    return Fault(door.name, changed, said, "".join(traceback.format_exception(error)))
+
+
+def _raised(door: Door, odd: dict[str, Any]) -> BaseException | None:
+    """What a call raises."""
     try:
         with alarm(LATE), warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
             door.call({**CALLS[door.name](), **odd})
-    except MetaIKError:
-        return None
-    except Hangs:
-        return Fault(door.name, changed, f"hangs for {LATE:g} s", traceback.format_exc())
-    except Exception as error:
-        return Fault(door.name, changed, f"{type(error).__name__}: {error}", traceback.format_exc())
+    except (Exception, Hangs) as error:
+        return error
     return None
 
 

@@ -329,7 +329,6 @@ OWNERS: dict[str, Callable[[], Any]] = {
     "compare.Trial": trial,
 }
 
-STEP = {"x": np.array(X6), "r": np.zeros(6), "J": np.eye(6), "square": 0.1}
 REFINE = {"starts": np.array([X6]), "evaluations": 50}
 
 
@@ -371,6 +370,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "limits": {"wrist_1_joint": (-1.0, 1.0)},
         "reference": np.zeros(6),
     },
+    "mik.Chain.at": lambda: {"q": X6},
     "mik.Chain.q": lambda: {"x": X6, "q0": np.zeros(6)},
     "mik.Chain.x": lambda: {"q": X6},
     "mik.Chain.configuration": lambda: {"q": X6},
@@ -408,6 +408,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.CollisionWorld.in_collision_batch": lambda: {"Q": [[0.1, 0.2]]},
     "mik.CollisionWorld.min_distance_batch": lambda: {"Q": [[0.1, 0.2]]},
     "mik.IKProblem.of": lambda: {"chain": chain(), "target": POSE, "world": None},
+    "mik.IKProblem.at": lambda: {"q": X6},
     "mik.IKProblem.linearize": lambda: {"x": np.array(X6)},
     "mik.IKProblem.branches": lambda: {"x0": np.array(X6)},
     "mik.IKProblem.near": lambda: {"count": 3},
@@ -600,7 +601,6 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     # refiners
     "refine.LM": lambda: {"rule": "chan", "scale": None, "patience": refine.Patience()},
     "refine.LM.refine": refining,
-    "refine.LM.step": lambda: dict(STEP),
     "refine.QP": lambda: {
         "solver": "osqp",
         "damping": 0.02,
@@ -611,17 +611,13 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "patience": refine.Patience(),
     },
     "refine.QP.refine": refining,
-    "refine.QP.steps": lambda: {"problem": problem()},
     "refine.SDLS": lambda: {"largest": 0.7, "patience": refine.Patience()},
     "refine.SDLS.refine": refining,
-    "refine.SDLS.step": lambda: {"r": np.zeros(6), "J": np.eye(6), "effectors": np.zeros((6, 6))},
     "refine.Newton": lambda: {"cutoff": 1e-3, "patience": refine.Patience()},
     "refine.Newton.refine": refining,
-    "refine.Newton.step": lambda: dict(STEP),
     "refine.Patience": lambda: {"iterations": 10, "steps": 4, "share": 0.5},
     "refine.Transpose": lambda: {"patience": refine.Patience(2000, 50, 0.8)},
     "refine.Transpose.refine": refining,
-    "refine.Transpose.step": lambda: dict(STEP),
     "refine.make_refiner": lambda: {"refiner": "dls"},
     # stewart
     "stewart.ClosedModel.leg": lambda: {"i": 0},

@@ -209,8 +209,9 @@ def _reader(hint: Any) -> Read:
         return _mapping(*map(_reader, inside))
     if origin is np.ndarray:
         return _array(get_args(inside[1])[0])
-    plain = PLAIN.get(hint)
-    return plain if plain is not None else _instance(hint if origin is None else origin)
+    kind = hint if origin is None else origin
+    plain = PLAIN.get(kind)
+    return plain if plain is not None else _instance(kind)
 
 
 def _free(hint: Any) -> bool:
@@ -270,7 +271,7 @@ def _path(value: Any) -> Path:
 
 
 def _called(value: Any) -> Any:
-    if not callable(value):
+    if not callable(value) or isinstance(value, type):
         raise _Unlike
     return value
 
@@ -316,7 +317,7 @@ def _items(value: Any) -> list[Any]:
         raise _Unlike
     try:
         return list(value)
-    except TypeError:  # an array without axes
+    except Exception:  # an array without axes, or anybody's class that is not what it seems
         raise _Unlike from None
 
 

@@ -11,7 +11,6 @@ import coal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidGeometry
 
 FLAT = 1e-9  # thickness of a set of points, in its lengths, below which it has none
@@ -63,7 +62,6 @@ class Mesh:
             )
 
     @staticmethod
-    @checked
     def read(path: str | Path, scale: float = 1.0) -> Mesh:
         """The mesh in a file that coal's reader knows: .stl, .obj, .dae, .ply and others.
 

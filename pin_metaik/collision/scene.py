@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from pin_metaik.arguments import checked
 from pin_metaik.collision.mesh import Mesh
 from pin_metaik.collision.obstacle import Obstacle
 from pin_metaik.collision.shapes import Box, Capsule, Cone, Cylinder, HalfSpace, Plane, Shape, Sphere
@@ -36,7 +35,6 @@ def scene_names() -> list[str]:
     return sorted(_shipped())
 
 
-@checked
 def load_scene(source: str | Path) -> tuple[Obstacle, ...]:
     """The obstacles of a scene, by its name or from a TOML file.
 

@@ -10,7 +10,6 @@ import coal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import checked
 from pin_metaik.collision.mesh import Mesh
 from pin_metaik.errors import InvalidGeometry
 
@@ -36,7 +35,6 @@ class Box:
         return coal.Box(*self.size)
 
 
-@checked
 @dataclass(frozen=True)
 class Sphere:
     """A ball around the origin.
@@ -70,7 +68,6 @@ class _Round:
         length(kind, "length", self.length)
 
 
-@checked
 @dataclass(frozen=True)
 class Cylinder(_Round):
     """A cylinder about the z axis, centred at the origin.
@@ -85,7 +82,6 @@ class Cylinder(_Round):
         return coal.Cylinder(self.radius, self.length)
 
 
-@checked
 @dataclass(frozen=True)
 class Capsule(_Round):
     """A cylinder about the z axis with half a ball at each end, centred at the origin.
@@ -100,7 +96,6 @@ class Capsule(_Round):
         return coal.Capsule(self.radius, self.length)
 
 
-@checked
 @dataclass(frozen=True)
 class Cone(_Round):
     """A cone about the z axis: its base at z = -length / 2, its tip at z = length / 2.
@@ -137,7 +132,6 @@ class _Flat:
         return normal / size, self.offset / size
 
 
-@checked
 @dataclass(frozen=True)
 class HalfSpace(_Flat):
     """Everything on one side of a plane: the points p with normal . p <= offset. A floor is ``HalfSpace()``.
@@ -152,7 +146,6 @@ class HalfSpace(_Flat):
         return coal.Halfspace(*self._plane())
 
 
-@checked
 @dataclass(frozen=True)
 class Plane(_Flat):
     """A sheet without thickness or end: the points p with normal . p = offset.

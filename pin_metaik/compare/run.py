@@ -21,9 +21,11 @@ from pin_metaik.compare.suite import Suite
 from pin_metaik.compare.trial import Trial
 from pin_metaik.compare.unit import Unit
 from pin_metaik.errors import InvalidSetting, MissingExtra
+from pin_metaik.output import writable
 
 Backend: TypeAlias = Literal["loky", "dask"]
 
+MOST_JOBS = 10_000
 CONNECTING = 10.0  # s
 
 
@@ -85,9 +87,14 @@ def compare(
 
     Raises:
         MissingExtra: joblib, pyarrow or distributed are not installed.
-        InvalidSetting: The folder holds another comparison, or the scheduler cannot be reached.
+        InvalidSetting: The folder holds another comparison, jobs are none, or the scheduler cannot be reached.
+        CannotWrite: The folder cannot be made or written into.
     """
     need_parquet()
+    if jobs == 0 or abs(jobs) > MOST_JOBS:
+        raise InvalidSetting(f"jobs is a number of processes, 1 to {MOST_JOBS:,}, or -1: one a core; got {jobs}")
+    writable(folder, folder=True)
+    need_joblib()
     began = perf_counter()
     open_record(folder, Record.of(suite))
     environment.record(folder, command)
@@ -104,10 +111,18 @@ def compare(
     return Outcome(folder, len(rows), suite.trials, len(rows) - before, errors, perf_counter() - began)
 
 
-def _worked(units: list[Unit], jobs: int, backend: Backend, scheduler: str | None) -> Iterator[list[Trial]]:
-    """The rows of units, in the order in which they are finished."""
+def need_joblib() -> None:
+    """Make sure that tasks can be handed to workers.
+
+    Raises:
+        MissingExtra: joblib is not installed.
+    """
     if find_spec("joblib") is None:
         raise MissingExtra("comparing methods", "compare")
+
+
+def _worked(units: list[Unit], jobs: int, backend: Backend, scheduler: str | None) -> Iterator[list[Trial]]:
+    """The rows of units, in the order in which they are finished."""
     from joblib import Parallel, delayed, parallel_config
 
     with contextlib.ExitStack() as stack:

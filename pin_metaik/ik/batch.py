@@ -111,7 +111,7 @@ def solve_ik_batch(
     if workers is not None:
         whole("workers", workers, 1)
     check_world(chain, world)
-    solver = solver or DEFAULT_SOLVER
+    solver = DEFAULT_SOLVER if solver is None else solver
     instance(IKSolver, solver=solver)
     seed = int(rng.integers(2**62)) if isinstance(rng, np.random.Generator) else rng
     array = _as_array(targets)
@@ -133,7 +133,7 @@ def solve_ik_batch(
         batch.evaluations[i] = result.evaluations
 
     settings = solver.lane if array is not None and len(chain.frames) == 1 else None
-    workers = workers or os.cpu_count() or 1
+    workers = min(workers or os.cpu_count() or 1, max(k, 1))
     left: Iterable[int] = range(k)
     if array is not None and settings is not None and k:
         poses, starts = _as_poses(array), drawn(chain, seed, 0, LANE)

@@ -93,7 +93,7 @@ def solve_ik_path(
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
     """
     began = perf_counter()
-    if not isinstance(targets, (Sequence, np.ndarray)) or isinstance(targets, str) or not np.ndim(targets):
+    if isinstance(targets, str) or not (isinstance(targets, Sequence) or np.ndim(targets)):
         raise InvalidTarget(f"targets are a list of poses or positions, got {shown(targets)}")
     if len(targets) == 0:
         raise InvalidTarget("a path has at least one target")

@@ -153,6 +153,7 @@ class IKProblem:
     def near(self, count: int) -> NDArray[np.float64]:
         """Sampled coordinates (count, n) of the chain's atlas with the poses nearest to the targets, nearest first."""
         few("count", count, 0)
+        count = int(count)
         out = np.empty((count, self.chain.n))
         self.chain.kernels.neighbours(self.tasks, *self.chain.atlas.arrays, count, out)
         return out

@@ -15,7 +15,7 @@ from pin_metaik.ik.result import IKResult
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
-from pin_metaik.randomness import Rng
+from pin_metaik.randomness import Rng, as_generator
 
 
 def solve_ik(
@@ -52,14 +52,18 @@ def solve_ik(
         InvalidBounds: If a joint of the chain has no finite range to search in.
         InvalidSetting: If the world is another model's than the chain.
     """
-    solver = solver or DEFAULT_SOLVER
+    solver = DEFAULT_SOLVER if solver is None else solver
     try:
         if chain.held and q0 is not None:
             chain = chain.at(q0)
         fast = solve_fast(chain, target, q0, solver, rng)
-    except AttributeError:  # looking costs nothing here, and a third of the time of a quick solve before it
+    except (
+        AttributeError,
+        TypeError,
+    ):  # told here, where looking costs a quick solve nothing
         instance(Chain, chain=chain)
         instance(IKSolver, solver=solver)
+        as_generator(rng)
         raise
     if world is not None:
         instance(CollisionWorld, world=world)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from typing import NamedTuple, TypeAlias
@@ -211,6 +212,6 @@ def _whole(tolerance: Tolerance) -> tuple[tuple[float, float, float], float]:
 
 
 def _weight(name: str, weight: float) -> float:
-    if not (isinstance(weight, (int, float, np.integer, np.floating)) and 0.0 < weight < math.inf):
-        raise InvalidTarget(f"{name} is a finite number above 0, got {weight!r}")
+    if not (isinstance(weight, (int, float, np.integer, np.floating)) and 0.0 < weight <= sys.float_info.max):
+        raise InvalidTarget(f"{name} is a finite number above 0, got {shown(weight)}")
     return float(weight)

@@ -12,7 +12,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import array, checked, instance
+from pin_metaik.arguments import array, checked, shown
 from pin_metaik.errors import FixedFrame, InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.kinematics.atlas import LEAF, SEED, Atlas, chart
 from pin_metaik.kinematics.closed_form import closed_form
@@ -308,7 +308,9 @@ class Chain:
             return self._samples[count, seed]
         except (KeyError, TypeError):  # not drawn yet, or no such thing
             few("count", count, 0)
-            instance(tuple, seed=seed)
+            count = int(count)
+            if not isinstance(seed, tuple) or not all(isinstance(one, (int, np.integer)) for one in seed):
+                raise InvalidSetting(f"a seed is a whole number of at least 0, got {shown(seed)}") from None
             if len(self._samples) == REMEMBERED:
                 self._samples.clear()
             self._samples[count, seed] = X = self.box.sample(as_generator(seed), count)

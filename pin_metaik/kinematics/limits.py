@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import array, checked_as
+from pin_metaik.arguments import array, checked_as, number
 from pin_metaik.errors import InvalidBounds
 from pin_metaik.optimize import Box
 
@@ -112,7 +112,7 @@ class Limits:
     def contains(self, x: NDArray[np.float64], tolerance: float = 0.0) -> bool:
         """Whether every coordinate is inside its limits, up to ``tolerance`` (rad or m)."""
         # Plain floats: on a handful of numbers three times quicker than numpy's reductions.
-        x = array("x", x, len(self.names), finite=False)
+        x, tolerance = array("x", x, len(self.names), finite=False), number("tolerance", tolerance)
         return all(
             low - tolerance <= v <= high + tolerance for (low, high), v in zip(self._pairs, x.tolist(), strict=True)
         )

@@ -81,8 +81,8 @@ class Box:
             origin: The points in the box (k, n) they came from.
         """
         inside = self.clip(X)
-        if np.shape(origin) != inside.shape:
-            array("origin", origin, *inside.shape)
+        if not isinstance(origin, np.ndarray) or origin.shape != inside.shape:
+            origin = array("origin", origin, *inside.shape)
         outside = inside != X
         return np.where(outside, 0.5 * inside + 0.5 * origin, X) if outside.any() else X
 

@@ -20,6 +20,7 @@ from pathlib import Path
 
 from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidTable
+from pin_metaik.output import writable
 from pin_metaik.robots.dh import DHRow, DHTable, Placement
 from pin_metaik.robots.library import catalogue
 from pin_metaik.robots.table import read_table
@@ -71,8 +72,12 @@ def to_urdf(table: DHTable) -> str:
 
 @checked
 def write_urdfs(folder: str | Path) -> list[Path]:
-    """Write the URDF of every table in the catalogue into a folder, which is made if need be; returns the files."""
-    folder = Path(folder)
+    """Write the URDF of every table in the catalogue into a folder, which is made if need be; returns the files.
+
+    Raises:
+        CannotWrite: It cannot be made or written into.
+    """
+    folder = writable(folder, folder=True)
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     for name, path in catalogue().items():

@@ -17,7 +17,7 @@ from pin_metaik.errors import InvalidConfiguration, InvalidSetting
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.inverse import leg_vectors
 from pin_metaik.stewart.mechanism import Mechanism
-from pin_metaik.stewart.poses import PoseLike, as_poses
+from pin_metaik.stewart.poses import PoseLike, one_pose
 from pin_metaik.stewart.urdf import to_urdf
 
 TOLERANCE = 1e-13  # m
@@ -59,7 +59,7 @@ class ClosedModel:
     @checked
     def configuration(self, pose: PoseLike) -> Array:
         """The configuration q (nq,) at a pose, in closed form: the direction of a leg is Rx(a) Ry(b) z."""
-        T = as_poses(pose)[0]
+        T = one_pose(pose)
         q: Array = pin.neutral(self.model)
         first = self.platform.idx_q
         q[first : first + 7] = pin.SE3ToXYZQUAT(pin.SE3(T))

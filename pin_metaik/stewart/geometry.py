@@ -169,7 +169,7 @@ def _number(name: str, value: object) -> float:
 
 
 def _numbers(name: str, values: Any) -> tuple[float, ...]:
-    if isinstance(values, str) or not isinstance(values, (Sequence, np.ndarray)):
+    if isinstance(values, str) or not isinstance(values, (Sequence, np.ndarray)) or np.ndim(values) == 0:
         raise InvalidGeometry(f"{name} is a list of numbers, got {values!r}")
     return tuple(_number(name, value) for value in values)
 

@@ -50,7 +50,7 @@ class Grid:
     def __post_init__(self) -> None:
         for name in ("counts", "steps"):
             counts = getattr(self, name)
-            if not isinstance(counts, (tuple, list, np.ndarray)) or len(counts) != 3:
+            if not isinstance(counts, (tuple, list, np.ndarray)) or np.shape(counts) != (3,):
                 raise InvalidBounds(f"{name} of a grid are three whole numbers, got {counts!r}")
             for count in counts:
                 few(f"{name} of a grid", count)

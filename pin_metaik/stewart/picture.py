@@ -17,7 +17,7 @@ from pin_metaik.stewart.design import Designed
 from pin_metaik.stewart.geometry import on_circle
 from pin_metaik.stewart.inverse import leg_vectors
 from pin_metaik.stewart.mechanism import Mechanism
-from pin_metaik.stewart.poses import PoseLike, as_poses, pose_at
+from pin_metaik.stewart.poses import PoseLike, one_pose, pose_at
 from pin_metaik.stewart.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def draw_into(
     _need_figure(figure)
     unit = mechanism.unit
     scale = 1.0 / mechanism.metres
-    T = as_poses(_middle(mechanism, workspace) if pose is None else pose)[0]
+    T = one_pose(_middle(mechanism, workspace) if pose is None else pose)
     axes = figure.add_subplot(1, 2 if workspace is not None else 1, 1, projection="3d")
     _mechanism(axes, mechanism, T, scale)
     axes.set_title(f"{mechanism.name} ({mechanism.geometry.type})", fontsize=11)

@@ -54,6 +54,18 @@ def as_poses(poses: PoseLike) -> Array:
     return array
 
 
+def one_pose(pose: PoseLike) -> Array:
+    """One pose (4, 4), or the first of many.
+
+    Raises:
+        InvalidTarget: It is none, or there is none.
+    """
+    poses = as_poses(pose)
+    if not len(poses):
+        raise InvalidTarget("a pose is a pin.SE3 or a 4x4 matrix, got no pose at all")
+    return np.asarray(poses[0])
+
+
 def is_many(poses: PoseLike) -> bool:
     """Whether these are poses, which get a list of answers, rather than one pose, which gets one."""
     return np.ndim(poses) == 3

@@ -18,7 +18,7 @@ from pin_metaik.stewart.inverse import leg_lengths
 from pin_metaik.stewart.jacobian import jacobian
 from pin_metaik.stewart.limits import LegLimits, PoseState
 from pin_metaik.stewart.loading import load_kernels
-from pin_metaik.stewart.poses import PoseLike, as_poses
+from pin_metaik.stewart.poses import PoseLike, as_poses, one_pose
 
 
 @checked_as(InvalidTarget)
@@ -96,7 +96,7 @@ def straight(start: PoseLike, end: PoseLike, seconds: float, samples: int = 101)
     """
     within("seconds", seconds, 1e-9)
     few("samples", samples, 2)
-    (first,), (last,) = as_poses(start), as_poses(end)
+    first, last = one_pose(start), one_pose(end)
     u = np.linspace(0.0, 1.0, samples)
     s, s_dot = u**3 * (10 - 15 * u + 6 * u**2), 30 * (u - u**2) ** 2 / seconds
     turn = first[:3, :3] @ pin.log3(first[:3, :3].T @ last[:3, :3])  # rotation vector in the base frame

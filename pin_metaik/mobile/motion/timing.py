@@ -9,8 +9,8 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
-from pin_metaik.arguments import checked
-from pin_metaik.errors import InvalidSetting
+from pin_metaik.arguments import array, checked
+from pin_metaik.errors import InvalidGeometry, InvalidSetting
 from pin_metaik.mobile.motion.learned import LearnedTurn, TurnReport, learn_turn
 from pin_metaik.mobile.motion.result import Method, TrajectoryPlan
 from pin_metaik.mobile.motion.route import Route
@@ -73,7 +73,9 @@ def plan_trajectory(
     if method == "ann":
         model = model or learn_turn(vehicle)
     began = perf_counter()
-    route = Route.along(path if isinstance(path, Path) else Path(np.asarray(path)), vehicle, obstacles, keep)
+    if not isinstance(path, Path):
+        path = Path(array("path", path, "n", 2, error=InvalidGeometry))
+    route = Route.along(path, vehicle, obstacles, keep)
     lengths, report, speeds = _solve(route, method, algorithm, budget, rng, model, callback)
     took = perf_counter() - began
     return TrajectoryPlan(

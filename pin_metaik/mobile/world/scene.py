@@ -141,7 +141,7 @@ def _read(path: Path | Traversable) -> Mapping[str, Any]:
 def _point(role: str, value: Any) -> Point:
     try:
         x, y = (float(v) for v in value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidGeometry(f"the {role} is a point (x, y), got {value!r}") from None
     if not (math.isfinite(x) and math.isfinite(y)):
         raise InvalidGeometry(f"the {role} must be finite, got {value!r}")
