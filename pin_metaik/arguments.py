@@ -103,7 +103,7 @@ def instance(kind: Any, **given: object) -> None:
     """
     for name, value in given.items():
         if not isinstance(value, kind):
-            raise InvalidSetting(f"{name} is {_words(kind)}, got {shown(value)}")
+            raise InvalidSetting(f"{name}: expected {_words(kind)}, got {shown(value)}")
 
 
 def number(name: str, value: object, error: type[MetaIKError] = InvalidSetting) -> float:
@@ -139,11 +139,11 @@ def array(
     try:
         numbers = np.asarray(value, dtype=float, order="C")
     except (TypeError, ValueError, OverflowError):
-        raise error(f"{name} is numbers of shape {_shape(shape)}, got {shown(value)}") from None
+        raise error(f"{name}: expected numbers of shape {_shape(shape)}, got {shown(value)}") from None
     if numbers.shape != shape and not _fits(numbers.shape, shape):
-        raise error(f"{name} has shape {_shape(shape)}, got {numbers.shape}")
+        raise error(f"{name}: expected shape {_shape(shape)}, got {numbers.shape}")
     if finite and not math.isfinite(np.add.reduce(numbers, axis=None)) and not np.isfinite(numbers).all():
-        raise error(f"{name} has finite entries, got {shown(value)}")
+        raise error(f"{name}: expected finite numbers, got {shown(value)}")
     return numbers if numbers.flags.writeable else numbers.copy()  # compiled loops take no others
 
 
@@ -180,7 +180,7 @@ def _read(name: str, value: Any, readers: Mapping[str, tuple[Read, Any]], error:
         return read(value)
     except _Unlike as unlike:
         advice = f"; {unlike}" if str(unlike) else ""
-        raise error(f"{name} is {_words(hint)}, got {shown(value)}{advice}") from None
+        raise error(f"{name}: expected {_words(hint)}, got {shown(value)}{advice}") from None
 
 
 def _hints(door: Callable[..., Any]) -> dict[str, Any]:
@@ -301,8 +301,11 @@ def _either(readers: Sequence[Read]) -> Read:
 
 
 def _one_of(values: tuple[Any, ...]) -> Read:
+    """A closed set is the function's own to know; here it is seen to that a member can be looked for."""
+    kinds = tuple({type(value) for value in values})
+
     def read(value: Any) -> Any:
-        if not isinstance(value, (str, int)) or value not in values:
+        if not isinstance(value, kinds):
             raise _Unlike
         return value
 
@@ -409,4 +412,5 @@ def _words(hint: Any) -> str:
     if kind in NAMES:
         return NAMES[kind]
     making = MAKING.get(kind.__name__)
-    return f"a {kind.__name__}{f', e.g. {making}' if making else ''}"
+    article = "an" if kind.__name__[0] in "AEIOU" else "a"
+    return f"{article} {kind.__name__}{f', e.g. {making},' if making else ''}"

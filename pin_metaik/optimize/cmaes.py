@@ -9,14 +9,12 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from pin_metaik.arguments import checked
 from pin_metaik.errors import MissingExtra
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import positive, whole, within
 from pin_metaik.optimize.space import Array
 
 
-@checked
 @dataclass(frozen=True)
 class CMAES:
     """Covariance matrix adaptation (Hansen and Ostermeier 2001); needs the extra ``cma``.

@@ -8,7 +8,6 @@ from typing import Literal
 
 import numpy as np
 
-from pin_metaik.arguments import checked
 from pin_metaik.optimize.pick import below, others
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import one_of, whole, within
@@ -17,7 +16,6 @@ from pin_metaik.optimize.space import Array
 Strategy = Literal["rand/1/bin", "best/1/bin", "current-to-best/1/bin"]
 
 
-@checked
 @dataclass(frozen=True)
 class DE:
     """Differential evolution, Storn and Price 1997, J. Global Optimization 11.

@@ -8,7 +8,6 @@ from typing import Literal
 
 import numpy as np
 
-from pin_metaik.arguments import checked
 from pin_metaik.optimize.pick import Indices
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import one_of, whole, within
@@ -18,7 +17,6 @@ Selection = Literal["roulette", "tournament"]
 Crossover = Literal["one-point", "blend"]
 
 
-@checked
 @dataclass(frozen=True)
 class GA:
     """Genetic algorithm: roulette wheel, one-point crossover, one-point mutation, elitism; a gene is a coordinate.

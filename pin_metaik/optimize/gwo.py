@@ -7,13 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pin_metaik.arguments import checked
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import whole
 from pin_metaik.optimize.space import Array
 
 
-@checked
 @dataclass(frozen=True)
 class GWO:
     """Grey wolf optimiser, Mirjalili et al. 2014, Adv. Eng. Software 69 (equations as numbered in the RV-7FL paper).

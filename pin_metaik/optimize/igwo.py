@@ -6,14 +6,12 @@ import math
 from collections.abc import Generator
 from dataclasses import dataclass
 
-from pin_metaik.arguments import checked
 from pin_metaik.optimize.gwo import hunt
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import whole
 from pin_metaik.optimize.space import Array
 
 
-@checked
 @dataclass(frozen=True)
 class IGWO:
     """Grey wolves with ``a = 2 exp(-t s / max)``, s the number of wolves (RV-7FL paper, DEU FMD 26(78) 2024, Eq. 13).

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.arguments import checked
 from pin_metaik.optimize.pick import below, others
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import whole, within
@@ -19,7 +18,6 @@ R, L, G = range(3)  # the trial-vector producers: representative, local random, 
 SHARES = {R: (0.6, 0.2, 0.2), L: (0.2, 0.6, 0.2), G: (0.4, 0.4, 0.2)}  # of the population, by winner (16, 17)
 
 
-@checked
 @dataclass(frozen=True)
 class MTDE:
     """MTDE, Nadimi-Shahraki et al. 2020, Applied Soft Computing 97 (equations as numbered in the RV-7FL paper).

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pin_metaik.arguments import checked
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import whole, within
 from pin_metaik.optimize.space import Array
 
 
-@checked
 @dataclass(frozen=True)
 class QPSO:
     """Quantum-behaved PSO; Eq. 14-15 of the Stewart platform paper, repaired after Sun, Feng and Xu 2004.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.optimize.cmaes import CMAES
 from pin_metaik.optimize.de import DE
@@ -28,7 +27,6 @@ ALGORITHMS: dict[str, type[Metaheuristic]] = {
 }
 
 
-@checked
 def make(algorithm: str | Metaheuristic) -> Metaheuristic:
     """An algorithm from its name, with its default settings; an object that already is one is returned as it is.
 

@@ -8,7 +8,6 @@ from typing import Literal
 
 import numpy as np
 
-from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import one_of, whole, within
@@ -17,7 +16,6 @@ from pin_metaik.optimize.space import Array
 Leapers = Literal["worst", "all"]
 
 
-@checked
 @dataclass(frozen=True)
 class SFLA:
     """Shuffled frog leaping, Eusuff and Lansey 2003, as Elbeltagi et al. 2005 write it: without sub-memeplexes.

@@ -148,7 +148,9 @@ class DHTable:
         Raises:
             InvalidConfiguration: If q has not one finite number per joint.
         """
-        positions = array("q", q, len(self.rows), error=InvalidConfiguration)
+        positions = array(
+            f"{self.name} needs {len(self.rows)} finite joint positions", q, len(self.rows), error=InvalidConfiguration
+        )
         T = [self.base.matrix]
         for row, position in zip(self.rows, positions, strict=True):
             theta = row.theta if row.type == "prismatic" else row.theta + position

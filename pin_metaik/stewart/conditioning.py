@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from math import exp, log
 from numbers import Real
@@ -10,7 +11,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import checked, shown
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.settings import one_of
 from pin_metaik.optimize.space import Array
@@ -26,7 +27,6 @@ UNLIMITED = np.array([0.0, np.inf, -1.0, -1.0, 0.0])
 SPAN = 100.0  # the best characteristic length is looked for up to so many times either side of the platform's size
 
 
-@checked
 @dataclass(frozen=True)
 class Dexterity:
     """How a Jacobian becomes one number.
@@ -45,8 +45,9 @@ class Dexterity:
 
     def __post_init__(self) -> None:
         one_of("norm", self.norm, Norm)
-        if self.length not in ("rm", "best") and not (is_number(self.length) and 0.0 < float(self.length) < np.inf):
-            raise InvalidSetting(f"length is 'rm', 'best' or a length above zero in m, got {self.length!r}")
+        named = isinstance(self.length, str) and self.length in ("rm", "best")
+        if not named and not (is_number(self.length) and 0.0 < self.length <= sys.float_info.max):  # type: ignore[operator]
+            raise InvalidSetting(f"length is 'rm', 'best' or a length above zero in m, got {shown(self.length)}")
 
     @property
     def code(self) -> int:

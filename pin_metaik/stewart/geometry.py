@@ -148,7 +148,9 @@ def legs_of(connection: ArrayLike) -> tuple[tuple[int, int], ...]:
     Raises:
         InvalidGeometry: Not a matrix of zeros and ones.
     """
-    matrix = array("a connection matrix", connection, "base joints", "platform joints", error=InvalidGeometry)
+    matrix = array(
+        "a connection matrix of zeros and ones", connection, "base joints", "platform joints", error=InvalidGeometry
+    )
     if not np.isin(matrix, (0.0, 1.0)).all():
         raise InvalidGeometry(
             f"a connection matrix has a row of zeros and ones for every base joint, got {connection!r}"

@@ -95,7 +95,7 @@ class LegLimits:
         if self.distance < 0.0:
             raise InvalidGeometry(f"the distance between legs is not below zero, got {self.distance:g} m")
         if self.home is not None:
-            home = array("home, the position of P,", self.home, 3, error=InvalidGeometry)
+            home = array("home is the position x, y, z of P", self.home, 3, error=InvalidGeometry)
             object.__setattr__(self, "home", tuple(home.tolist()))
 
     @property

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,8 +34,10 @@ def need_plots() -> None:
     Raises:
         MissingExtra: matplotlib is not installed.
     """
-    if find_spec("matplotlib") is None:
-        raise MissingExtra("a picture", "plots")
+    try:
+        import matplotlib.figure  # noqa: F401  # asked for, not used
+    except ImportError:
+        raise MissingExtra("a picture", "plots") from None
 
 
 @checked

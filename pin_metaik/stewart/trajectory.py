@@ -61,7 +61,7 @@ class Trajectory:
         Raises:
             InvalidTarget: As for the class.
         """
-        at, T = array("times", times, "k", error=InvalidTarget), as_poses(poses)
+        at, T = array("the times of a trajectory", times, "k", error=InvalidTarget), as_poses(poses)
         steady = len(T) > 1 and at.shape == (len(T),) and bool((np.diff(at) > 0.0).all())
         return cls(at, T, _differences(at, T) if steady else np.zeros((len(T), 6)))  # the class says what is wrong
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.ik.refine.dls import DLS
 from pin_metaik.ik.refine.iterate import Patience
@@ -43,7 +42,6 @@ __all__ = [
 ]
 
 
-@checked
 def make_refiner(refiner: str | Refiner) -> Refiner:
     """A refiner from its name; an object that already is one is returned as it is.
 

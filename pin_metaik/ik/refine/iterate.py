@@ -10,7 +10,6 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.arguments import checked
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.protocol import Refinement, given_starts
 from pin_metaik.optimize.settings import whole, within
@@ -22,7 +21,6 @@ DECADE = 0.01  # once the tolerances are met a further step must bring the squar
 EXACT = 1e-18  # ... until it is this small: 1e-9 m or rad
 
 
-@checked
 @dataclass(frozen=True)
 class Patience:
     """When a start is given up.

@@ -20,7 +20,6 @@ SCALES: dict[Rule, float] = {"chan": 0.1, "sugihara": 1e-4, "wampler": 1e-4}
 FLOOR = 1e-9  # of the damping: at a singular pose J J' alone cannot be solved with
 
 
-@checked
 @dataclass(frozen=True)
 class LM:
     """Levenberg-Marquardt, dx = -(J'J + W_n)^-1 J'r with W_n = w 1, clipped at the limits.

@@ -14,7 +14,6 @@ from pin_metaik.ik.refine.protocol import Refinement
 from pin_metaik.optimize.settings import within
 
 
-@checked
 @dataclass(frozen=True)
 class Newton:
     """Newton-Raphson, dx = -J^+ r (Whitney 1969), clipped at the limits.

@@ -20,7 +20,6 @@ from pin_metaik.optimize.settings import positive
 FLOOR = 1e-9  # what is left of the damping at a solution
 
 
-@checked
 @dataclass(frozen=True)
 class QP:
     """Inverse kinematics as a sequence of quadratic programs (Kanoun, Lamiraux and Wieber 2011; Escande et al. 2014).

@@ -16,7 +16,6 @@ from pin_metaik.optimize.settings import positive
 ZERO = 1e-10  # singular values below it have no direction to damp
 
 
-@checked
 @dataclass(frozen=True)
 class SDLS:
     """Selectively damped least squares (Buss and Kim 2005), clipped at the limits.

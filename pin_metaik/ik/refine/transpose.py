@@ -13,7 +13,6 @@ from pin_metaik.ik.refine.iterate import Patience, iterate
 from pin_metaik.ik.refine.protocol import Refinement
 
 
-@checked
 @dataclass(frozen=True)
 class Transpose:
     """Jacobian transpose, dx = -alpha J'r (Wolovich and Elliott 1984), clipped at the limits.

@@ -87,7 +87,7 @@ def _offset(a: Array, b: Array, point: Array) -> tuple[float, bool]:
 
 
 def _points(values: ArrayLike) -> Array:
-    points = array("the points of a path", values, "n", 2, error=InvalidGeometry).copy()
+    points = array("a path is at least two points (x, y)", values, "n", 2, error=InvalidGeometry).copy()
     if len(points) < 2:
         raise InvalidGeometry(f"a path is at least two points (x, y), finite; got {shown(values)}")
     return points
