@@ -15,6 +15,8 @@ from pin_metaik.compare.trial import Trial
 from pin_metaik.compare.unit import Unit
 from pin_metaik.errors import InvalidSetting, UnknownName
 
+ROWS = ("rotation", "", "")  # the word stands before the first row of a matrix
+
 
 @dataclass(frozen=True)
 class Replay:
@@ -40,8 +42,9 @@ class Replay:
         trial = self.trial
         yield trial.name
         for i, pose in enumerate(self.task.targets):
-            yield f"target {i + 1}: position {_numbers(pose.translation)} m"
-            yield from (f"          rotation {_numbers(row)}" for row in pose.rotation)
+            which = f", pose {i + 1}" if len(self.task.targets) > 1 else ""
+            yield f"target {trial.target}{which}: position {_numbers(pose.translation)} m"
+            yield from (f"{word:>12} {_numbers(row)}" for word, row in zip(ROWS, pose.rotation, strict=True))
         if self.task.planted is not None:
             yield f"made from x = {_numbers(self.task.planted[-1])}"
         yield f"{'solved' if trial.solved else 'not solved'}: {trial.status}, claimed: {trial.claimed}"
@@ -67,7 +70,7 @@ def replay(folder: Path, name: str) -> Replay:
         name: ``robot/case/target/method/seed``.
 
     Raises:
-        InvalidSetting: The folder holds no comparison, or the name is none.
+        InvalidSetting: The folder holds no comparison, or the name is none, or one of a target it does not have.
         UnknownName: The comparison has no such robot, case or method.
     """
     suite = read_record(folder).suite()
@@ -78,6 +81,9 @@ def replay(folder: Path, name: str) -> Replay:
         raise InvalidSetting(
             f"a trial is ROBOT/CASE/TARGET/METHOD/SEED, e.g. panda/singular/17/gwo+dls/0, got {name!r}"
         ) from None
+    for kind, number, count in (("target", numbers[0], suite.targets), ("seed", numbers[1], suite.seeds)):
+        if not 0 <= number < count:
+            raise InvalidSetting(f"the {kind}s of this comparison are 0 to {count - 1}, got {number}")
     for kind, word, known in (
         ("robot", robot, suite.arms),
         ("case", case, suite.tasks),

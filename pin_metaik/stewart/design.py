@@ -33,6 +33,9 @@ class Designed:
         """Whether a feasible design was found. One found before an interruption counts."""
         return self.score is not None
 
+    def __bool__(self) -> bool:
+        return self.success
+
     @property
     def interrupted(self) -> bool:
         """Whether the search was interrupted; the mechanism is the best until then."""

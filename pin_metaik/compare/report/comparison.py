@@ -18,6 +18,7 @@ from pin_metaik.compare.report.write import need_figures, write
 from pin_metaik.compare.results import Results
 from pin_metaik.compare.store import read_results, replace_text
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.output import writable
 
 TITLE = "Inverse kinematics where it is hard"
 PAGE, STEM = "report.html", "report"
@@ -33,8 +34,10 @@ def write_report(folder: Path) -> list[Path]:
     Raises:
         InvalidSetting: The folder holds no comparison, or no row yet.
         MissingExtra: matplotlib is not installed.
+        CannotWrite: The report cannot be written there.
     """
     need_figures()
+    writable(folder / STEM, folder=True)
     results = read_results(folder)
     if not results.trials:
         raise InvalidSetting(f"{folder} has no rows yet: run pin-metaik compare --out {folder}")

@@ -96,6 +96,9 @@ class TrajectoryPlan:
         """Whether it keeps the radius and gets to the goal; with a network, within a centimetre."""
         return self.collision_free and self.end_error <= (ARRIVED if self.learned is None else ARRIVED_LEARNED)
 
+    def __bool__(self) -> bool:
+        return self.success
+
     @property
     def notes(self) -> list[str]:
         """What a user should know, in sentences."""

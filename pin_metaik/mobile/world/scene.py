@@ -122,7 +122,9 @@ def scene_of(mapping: Mapping[str, Any], name: str = "scene", start: Any = None,
         raise InvalidGeometry(f"{name} is not a scene: it has no 'obstacles'; keys: start, goal, obstacles, bounds")
     for role, point in given.items():
         if point is None:
-            raise InvalidGeometry(f"{name} does not say where the {role} is: give {role}=(x, y)")
+            raise InvalidGeometry(
+                f"{name} does not say where the {role} is: give {role}=(x, y), on the command line --{role} X Y"
+            )
     return Scene(given["start"], given["goal"], mapping["obstacles"], mapping.get("bounds"), name)
 
 
