@@ -413,4 +413,4 @@ def _words(hint: Any) -> str:
         return NAMES[kind]
     making = MAKING.get(kind.__name__)
     article = "an" if kind.__name__[0] in "AEIOU" else "a"
-    return f"{article} {kind.__name__}{f', e.g. {making},' if making else ''}"
+    return f"{article} {kind.__name__}{f' (e.g. {making})' if making else ''}"

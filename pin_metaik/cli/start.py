@@ -39,7 +39,8 @@ def configuration(
 
 
 def _set(model: pin.Model, q: NDArray[np.float64], name: str, value: float, in_degrees: bool) -> None:
-    known = [joint for joint, kind in zip(model.names, model.joints, strict=True) if kind.nq in (1, 2) and kind.nv == 1]
+    kinds = list(zip(model.names, model.joints, strict=True))[1:]  # the first is the world
+    known = [joint for joint, kind in kinds if kind.nq in (1, 2) and kind.nv == 1]
     if name not in known:
         raise UnknownName("joint with one coordinate", name, known)
     joint = model.joints[model.getJointId(name)]
