@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
-from typing import cast
+from typing import TypeAlias, cast
 
 import numpy as np
 import pinocchio as pin
@@ -24,6 +24,8 @@ from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import LANE, Chain
 from pin_metaik.randomness import Rng
+
+Rows: TypeAlias = slice | NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +68,7 @@ class IKBatch:
             float(self.orientation_error[i]),
             int(self.evaluations[i]),
             self.seconds / len(self),
-            self.chain,
+            self.chain.at(self.q[i]),
             self.targets[i],
             world=world,
             contacts=world.pairs_in_collision(self.q[i]) if world is not None and collides else (),
@@ -91,7 +93,8 @@ def solve_ik_batch(
     Args:
         chain: The joints to move and the frames to place.
         targets: Poses (k, 4, 4) or positions (k, 3), which go through one compiled loop; or a list of any targets.
-        q0: (nq,) configuration to start all from, or (k, nq), one for each; default: the chain's reference.
+        q0: (nq,) configuration to start all from, or (k, nq), one for each, with the joints outside the chain and the
+            locked ones; default: the chain's reference.
         solver: How to search; default ``IKSolver()``.
         world: What must not collide.
         workers: Threads; default: one a core. The answers do not depend on it.
@@ -129,25 +132,36 @@ def solve_ik_batch(
     settings = solver.lane if array is not None and len(chain.frames) == 1 else None
     workers = workers or os.cpu_count() or 1
     left: Iterable[int] = range(k)
-    if array is not None and settings is not None:
+    if array is not None and settings is not None and k:
         poses, starts = _as_poses(array), drawn(chain, seed, 0, LANE)
-        lane = chain.pose_lane
         if array.ndim == 2:
-            lane, settings = chain.position_lane, np.array([*settings[:5], math.inf])
+            settings = np.array([*settings[:5], math.inf])
 
-        def together(part: slice) -> None:
-            chain.kernels.solve_poses(
-                lane.block, lane.rows, starts, settings, poses[part], batch.q[part], batch.evaluations[part]
-            )
-            _judge(batch, poses[part], settings[4:], part)
+        def together(part: Rows) -> None:
+            q, evaluations, goals = batch.q[part], batch.evaluations[part], poses[part]
+            here = chain.at(q[0])
+            lane = here.pose_lane if array.ndim == 3 else here.position_lane
+            chain.kernels.solve_poses(lane.block, lane.rows, starts, settings, goals, q, evaluations)
+            batch.q[part], batch.evaluations[part] = q, evaluations
+            _judge(batch, goals, settings[4:], part)
 
-        share_out(together, slices(k, workers), workers)
+        share_out(together, _parts(chain, bases, workers), workers)
         left = np.flatnonzero(~batch.success).tolist()
     share_out(alone, left, workers)
     return replace(batch, seconds=perf_counter() - began)
 
 
-def _judge(batch: IKBatch, poses: NDArray[np.float64], tolerances: NDArray[np.float64], part: slice) -> None:
+def _parts(chain: Chain, bases: NDArray[np.float64], workers: int) -> list[Rows]:
+    """The rows of bases (k, nq) in parts, each with the joints that the chain holds in one place."""
+    if not chain.held or (bases == bases[0])[:, chain.held].all():
+        return [*slices(len(bases), workers)]
+    _, group = np.unique(bases[:, chain.held], axis=0, return_inverse=True)
+    order, sizes = np.argsort(group, kind="stable"), np.bincount(group)
+    groups = np.split(order, np.cumsum(sizes)[:-1])
+    return [rows[part] for rows in groups for part in slices(len(rows), workers)]
+
+
+def _judge(batch: IKBatch, poses: NDArray[np.float64], tolerances: NDArray[np.float64], part: Rows) -> None:
     """Let Pinocchio judge one part of the batch."""
     chain, q = batch.chain, batch.q[part]
     errors = np.empty((len(q), 2))

@@ -26,6 +26,7 @@ from pin_metaik.kinematics import LANE, Chain
 from pin_metaik.randomness import Rng
 
 SOLVED = IKStatus.SOLVED
+AT_MIDDLE = 300.0  # evaluations, at most, for the middle of tolerances that are loose
 
 
 def solve_fast(
@@ -57,7 +58,8 @@ def solve_fast(
         else:
             return None
     if asked is not None:
-        settings = np.array([*settings[:4], near, aligned])
+        most = AT_MIDDLE if isinstance(asked, Target) and asked.loose else math.inf
+        settings = np.array([*settings[:3], min(settings[3], most), near, aligned])
     oriented = aligned < math.inf
     lane = chain.pose_lane if oriented else chain.position_lane
     starts = lane.starts if rng is None else drawn(chain, rng, 0, LANE)

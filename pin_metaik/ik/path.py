@@ -76,7 +76,8 @@ def solve_ik_path(
     Args:
         chain: The joints to move and the frame to place.
         targets: k targets, as for ``solve_ik``; close enough to each other for the step bound.
-        q0: (nq,) configuration the path should start near; default: wherever the path as a whole is best.
+        q0: (nq,) configuration the path should start near, with the joints outside the chain and the locked ones where
+            they stay; default: wherever the path as a whole is best, from the chain's reference.
         max_step: Largest step of a joint from one pose to the next, rad or m: one number, or (n,) one a joint.
         world: What must not collide at any of the poses; the steps between them are not looked at.
         rng: Seed or generator; ``None`` is a fixed seed.
@@ -95,6 +96,7 @@ def solve_ik_path(
     bound = np.broadcast_to(np.asarray(max_step, dtype=float), (chain.n,))
     if not (bound > 0.0).all():
         raise InvalidSetting(f"max_step is above 0, got {bound}")
+    chain = chain if q0 is None else chain.at(q0)
     base = chain.reference if q0 is None else chain.configuration(q0)
     problems = [IKProblem.of(chain, target, world) for target in targets]
     layers = _layers(problems, base, q0 is not None, rng)
@@ -115,6 +117,8 @@ def _layers(problems: list[IKProblem], base: NDArray[np.float64], near: bool, rn
         fresh = np.concatenate([problem.near(FRESH), drawn(problem.chain, rng, index, FRESH)])
         layer = _widened(problem, base, np.empty((0, len(x0))), followed, followed=True)
         layer = _widened(problem, base, layer, fresh)
+        if not len(layer):  # nothing in the middle of the tolerances
+            layer = _widened(problem.whole, base, _widened(problem.whole, base, layer, followed, followed=True), fresh)
         layers.append(layer)
         followed = layer if len(layer) else followed
     for i in range(len(problems) - 2, -1, -1):  # what only a later pose found may have begun earlier

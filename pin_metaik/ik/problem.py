@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import NamedTuple, cast
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import FrameNotFound, InvalidSetting, InvalidTarget
@@ -39,10 +39,13 @@ class Verdict(NamedTuple):
 class IKProblem:
     """Targets for the frames of a chain, inside limits, and perhaps in a world full of obstacles.
 
+    Joints that the chain holds are where its reference has them, but for ``verdict`` and ``accepts``, which judge whole
+    configurations; ``problem.at(q)`` is the problem with those joints elsewhere.
+
     Attributes:
         chain: The chain.
         targets: One for each of its frames, in the chain's order.
-        tasks: (T, 26) the targets as the kernels take them.
+        tasks: (T, 26) the targets as the kernels take them; a radius as a tolerance is aimed at in its middle.
         rows: (m, 2) the (frame, axis) pairs that count: three translations, three rotations, less the free ones.
         world: What must not collide; ``None``: nothing is checked.
     """
@@ -82,6 +85,25 @@ class IKProblem:
             targets = _match(chain.frames, targets)
         tasks = targets[0].task[None] if len(targets) == 1 else np.array([one.task for one in targets])
         return IKProblem(chain, targets, tasks, _rows(tuple([one.counts for one in targets])), world)
+
+    def at(self, q: ArrayLike) -> IKProblem:
+        """The same problem, with the joints that the chain holds where q (nq,) has them; see ``Chain.at``."""
+        chain = self.chain.at(q)
+        return self if chain is self.chain else replace(self, chain=chain)
+
+    @cached_property
+    def whole(self) -> IKProblem:
+        """The same problem aimed at all that is accepted: what is inside a tolerance is no error, nor cost.
+
+        An answer in the middle of the tolerances is a better one, and looked for first. Where the middle is out of
+        reach, descents towards it end at a compromise that may be outside; these end inside.
+        """
+        return replace(self, tasks=np.array([target.whole_task for target in self.targets]))
+
+    @property
+    def loose(self) -> bool:
+        """Whether a target allows more than the default tolerance, so that aiming at its middle may be in vain."""
+        return any(target.loose for target in self.targets)
 
     @property
     def limits(self) -> Limits:

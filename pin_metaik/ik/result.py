@@ -48,7 +48,7 @@ class IKResult:
         orientation_error: Angle to the target in rad, by Pinocchio; the worst frame's; 0 when orientation is free.
         evaluations: Forward kinematics computed, one a configuration.
         seconds: Time taken, s.
-        chain: The chain.
+        chain: The chain, with its held joints where ``q`` has them (``Chain.at``).
         given: The target as it was given, or ``None``: see ``target``.
         trace: (g, 2) evaluations and best cost after each generation of the seeder, when asked for.
         world: The world it must not collide in, if one was given.

@@ -32,9 +32,9 @@ def solve_ik(
         chain: The joints to move and the frames to place.
         target: World pose of the chain's frame (``pin.SE3`` or 4x4), a position (3,) in m, a ``Target``, or one
             ``Target`` for each frame of a chain that has several.
-        q0: (nq,) configuration to start from; joints outside the chain stay as they are in it. An arm with a closed
-            form stays on the branch that it is on (shoulder, elbow and wrist), if that has a solution. Default: the
-            chain's reference.
+        q0: (nq,) configuration to start from; joints outside the chain, and locked ones, are where it has them, in the
+            search and in the answer. An arm with a closed form stays on the branch that it is on (shoulder, elbow and
+            wrist), if that has a solution. Default: the chain's reference.
         solver: How to search; default ``IKSolver()``.
         world: What must not collide: the robot with itself, with what it holds, and with obstacles. Where the
             solver's solution does, others are searched for, by damped least squares whatever its refiner, then by
@@ -52,6 +52,8 @@ def solve_ik(
         InvalidSetting: If the world is another model's than the chain.
     """
     solver = solver or DEFAULT_SOLVER
+    if chain.held and q0 is not None:
+        chain = chain.at(q0)
     fast = solve_fast(chain, target, q0, solver, rng)
     if isinstance(fast, IKResult):
         result = fast

@@ -13,6 +13,8 @@ from pin_metaik.kinematics.coordinates import Coordinates, consecutive
 from pin_metaik.kinematics.limits import Limits, finite_or_infinite
 from pin_metaik.kinematics.paths import motion_of
 
+UNIT = 1e-6  # by how much the length of a quaternion may differ from 1
+
 
 def as_configuration(model: pin.Model, q: ArrayLike) -> NDArray[np.float64]:
     """A configuration (nq,) of the model, checked.
@@ -33,14 +35,35 @@ def as_configuration(model: pin.Model, q: ArrayLike) -> NDArray[np.float64]:
     return configuration
 
 
-def entry_limits(model: pin.Model) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Limits (nq,) of the entries of q that are a joint's coordinate; pairs and quaternions have none."""
-    least, most = np.full(model.nq, -np.inf), np.full(model.nq, np.inf)
-    for joint in list(model.joints)[1:]:
-        if joint.nq == 1:
-            least[joint.idx_q] = model.lowerPositionLimit[joint.idx_q]
-            most[joint.idx_q] = model.upperPositionLimit[joint.idx_q]
-    return least, most
+def neutral_inside(model: pin.Model) -> NDArray[np.float64]:
+    """The neutral configuration (nq,), each joint with one coordinate brought inside its limits."""
+    q: NDArray[np.float64] = pin.neutral(model)
+    single = [joint.idx_q for joint in list(model.joints)[1:] if joint.nq == 1]
+    q[single] = np.minimum(np.maximum(q[single], model.lowerPositionLimit[single]), model.upperPositionLimit[single])
+    return q
+
+
+def entries_of(model: pin.Model, joints: list[int]) -> NDArray[np.int64]:
+    """Where in a configuration joints given by id are, in order."""
+    kinds = [model.joints[j] for j in joints]
+    return np.array([e for kind in kinds for e in range(kind.idx_q, kind.idx_q + kind.nq)], dtype=np.int64)
+
+
+def check_turns(model: pin.Model, joints: list[int], q: NDArray[np.float64]) -> None:
+    """Refuse a configuration q (nq,) with a quaternion, or a cosine and sine, of a joint that is not of length 1.
+
+    Raises:
+        InvalidConfiguration: If so; the joint is named.
+    """
+    for j in joints:
+        entries = entries_of(model, [j])
+        alone = pin.neutral(model)
+        alone[entries] = q[entries]
+        if not pin.isNormalized(model, alone, UNIT):
+            raise InvalidConfiguration(
+                f"joint {model.names[j]!r} is at {q[entries]}: its quaternion, or cosine and sine, has not length 1; "
+                "pin.normalize(model, q) makes it so"
+            )
 
 
 def frame_id(model: pin.Model, name: str) -> int:
