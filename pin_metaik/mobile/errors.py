@@ -33,12 +33,14 @@ class NoPath(MetaIKError):
         start: (x, y).
         goal: (x, y).
         clearance: Distance the path had to keep from obstacles and walls.
+        join: How grown obstacles ended at their corners.
     """
 
-    def __init__(self, start: tuple[float, float], goal: tuple[float, float], clearance: float) -> None:
-        self.start, self.goal, self.clearance = start, goal, clearance
-        hint = "; try a smaller radius or margin, or round joins" if clearance else ""
+    def __init__(
+        self, start: tuple[float, float], goal: tuple[float, float], clearance: float, join: str = "mitre"
+    ) -> None:
+        self.start, self.goal, self.clearance, self.join = start, goal, clearance, join
         super().__init__(
             f"no path from ({start[0]:g}, {start[1]:g}) to ({goal[0]:g}, {goal[1]:g}): obstacles or walls close every "
-            f"way that keeps a clearance of {clearance:g}{hint}"
+            f"way that keeps a clearance of {clearance:g}"
         )

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from pin_metaik.errors import UnknownName
 from pin_metaik.mobile.paths import fitness_kernels as kernels
 from pin_metaik.mobile.world.freespace import FreeSpace
-from pin_metaik.mobile.world.growth import grow, rings
+from pin_metaik.mobile.world.border import rings
+from pin_metaik.mobile.world.growth import grow
 from pin_metaik.mobile.world.scene import Point
 from pin_metaik.optimize.settings import one_of, within
 from pin_metaik.optimize.space import Array
