@@ -41,13 +41,13 @@ def shortest_path(space: FreeSpace, start: Point, goal: Point, visibility: Visib
     if start == goal:
         return Path(np.array([start, goal]))
     if not space.connects(start, goal):
-        raise NoPath(start, goal, space.clearance, space.join)
+        raise NoPath(start, goal, space.clearance, space.nearly_connects(start, goal), space.join)
     search = Search.between(visibility or Visibility(space), start, goal)
     refused: Edges = set()
     while True:
         nodes = search.route(refused)
         if nodes is None:
-            raise NoPath(start, goal, space.clearance, space.join)
+            raise NoPath(start, goal, space.clearance, space.nearly_connects(start, goal), space.join)
         path = Path(search.points[nodes])
         if space.holds(path.points):
             return path.straightened(search.visibility.border.slack)
@@ -96,9 +96,7 @@ class Search:
                 heappush(heap, (whole, each))
         return None
 
-    def _opened(
-        self, node: int, came_from: int, length: Array, settled: NDArray[np.bool_], refused: Edges
-    ) -> Indices:
+    def _opened(self, node: int, came_from: int, length: Array, settled: NDArray[np.bool_], refused: Edges) -> Indices:
         """The nodes (k,) that are nearer to the start through this one."""
         m = len(self.points)
         count = kernels.nearer_through(
@@ -116,8 +114,8 @@ class Search:
         seen = self._found[:count].copy()
         unsure = seen >= (0 if self.vertex[node] < 0 else m - 2)  # one end is no corner
         unsure[unsure] = self.visibility.inside(self.points[[node]], self.points[seen[unsure]])
-        unsure |= [(node, each) in refused for each in seen.tolist()] if refused else False
-        return seen[~unsure]
+        free = seen[~unsure]
+        return np.array([each for each in free.tolist() if (node, each) not in refused], dtype=np.int64)
 
 
 def _traced(before: Indices, goal: int) -> list[int]:

@@ -23,6 +23,8 @@ from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.scene import Point
 from pin_metaik.optimize.space import Array
 
+Arrays = tuple[Array, Indices, Indices, NDArray[np.bool_], float, Indices, Indices, Array, int]
+
 SLACK = 0.5  # of what counts as touching: points nearer to a line are on it
 
 
@@ -73,7 +75,7 @@ class Visibility:
         self.grid = EdgeGrid.of(self.border)
 
     @property
-    def arrays(self) -> tuple[Array | Indices | NDArray[np.bool_] | float | int, ...]:
+    def arrays(self) -> Arrays:
         """Border and grid, as kernels take them."""
         border = self.border
         return *border.arrays, border.bends, border.slack, *self.grid.arrays

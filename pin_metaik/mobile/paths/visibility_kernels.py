@@ -65,9 +65,7 @@ def sort_into_cells(
             p, q = at_height(low, ax, ay, bx, by), at_height(high, ax, ay, bx, by)
             if ay == by:
                 p, q = ax, bx
-            for column in range(
-                cell(min(p, q) - pad, x, width, columns), cell(max(p, q) + pad, x, width, columns) + 1
-            ):
+            for column in range(cell(min(p, q) - pad, x, width, columns), cell(max(p, q) + pad, x, width, columns) + 1):
                 c = row * columns + column
                 if len(edges) > 0:
                     edges[first[c]] = k
@@ -119,11 +117,11 @@ def stands_between(
         if slack < t < length - slack:
             o = before[k]
             so = ux * (vertices[o, 1] - ay) - uy * (vertices[o, 0] - ax)
-            return bends[k] or abs(so) > slack or abs(sq) > slack
+            return bool(bends[k] or abs(so) > slack or abs(sq) > slack)
     elif (sp > 0) != (sq > 0) and not -slack <= sq <= slack:  # the edge crosses the line
         share = sp / (sp - sq)
         t = ux * (px + share * (qx - px)) + uy * (py + share * (qy - py))
-        return slack < t < length - slack
+        return bool(slack < t < length - slack)
     return False
 
 
@@ -166,7 +164,7 @@ def wall_between(
         while True:
             c = row * columns + column
             for i in range(first[c], first[c + 1]):
-                k = edges[i]
+                k = int(edges[i])
                 if stands_between(k, ax, ay, ux, uy, length, vertices, before, after, bends, slack):
                     return k
             if right * (last_column - column) <= 0:

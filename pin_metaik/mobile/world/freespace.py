@@ -11,7 +11,7 @@ import shapely
 
 from pin_metaik.mobile.errors import Blocked
 from pin_metaik.mobile.world.gaps import Contacts, opened
-from pin_metaik.mobile.world.growth import Join, grow
+from pin_metaik.mobile.world.growth import WITHIN, Join, grow
 from pin_metaik.mobile.world.scene import Point, Scene
 from pin_metaik.optimize.space import Array
 
@@ -55,8 +55,8 @@ class FreeSpace:
         """
         x_min, y_min, x_max, y_max = scene.box
         touch = TOUCH * _extent(scene.box)
-        flat = [obstacle for obstacle in scene.obstacles if obstacle.area == 0]
-        solid = [obstacle for obstacle in scene.obstacles if obstacle.area > 0]
+        flat = [obstacle for obstacle in scene.obstacles if obstacle.geom_type != "Polygon"]
+        solid = [obstacle for obstacle in scene.obstacles if obstacle.geom_type == "Polygon"]
         grown = [*grow(solid, clearance, join), *grow(flat, max(clearance, HAIR * touch), join)]
         if x_max - x_min <= 2 * clearance or y_max - y_min <= 2 * clearance:
             return FreeSpace(scene, clearance, shapely.Polygon(), join)
@@ -77,6 +77,11 @@ class FreeSpace:
     def touch(self) -> float:
         """How deep inside an obstacle still counts as touching it."""
         return TOUCH * self.extent
+
+    @property
+    def hair(self) -> float:
+        """What lines and points are grown by at least."""
+        return HAIR * self.touch
 
     @property
     def box(self) -> tuple[float, float, float, float]:
@@ -128,7 +133,28 @@ class FreeSpace:
         if not self.region.is_empty:
             free = shapely.get_coordinates(shapely.shortest_line(self.region, place))[0]
             nearest = (float(free[0]), float(free[1]))
-        raise Blocked(role, point, self.clearance, nearest)
+        raise Blocked(role, point, self.clearance, nearest, self.join if self._keeps(place) else None)
+
+    def _keeps(self, place: shapely.Point) -> bool:
+        """Whether a place keeps the clearance from obstacles and walls, whatever the corners of grown obstacles say."""
+        if not self.clearance:
+            return False
+        x_min, y_min, x_max, y_max = self.box
+        within = (
+            x_min - self.touch <= place.x <= x_max + self.touch and y_min - self.touch <= place.y <= y_max + self.touch
+        )
+        return within and self.distance(shapely.get_coordinates([place, place])) >= self.clearance
+
+    def nearly_connects(self, start: Point, goal: Point) -> float | None:
+        """A clearance that leaves a way between two places, although this space has none; None if none does.
+
+        It is smaller by half a percent, so that the obstacles grown by it lie within the clearance everywhere: if even
+        they leave no way, there is none.
+        """
+        if not self.clearance:
+            return None
+        smaller = WITHIN * self.clearance
+        return smaller if FreeSpace.of(self.scene, smaller, "round").connects(start, goal) else None
 
 
 def _without(inside: shapely.Geometry, solid: shapely.Geometry, touch: float) -> shapely.Geometry:

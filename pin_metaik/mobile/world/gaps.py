@@ -65,13 +65,9 @@ def opened(solid: shapely.Geometry, touch: float) -> shapely.Geometry:
 
 def _near(border: Border, width: float) -> tuple[Indices, Indices]:
     """Vertices and edges (k,) that come nearer to each other than a width and are not neighbours along a ring."""
-    before, after = border.before, border.after
-    tree = shapely.STRtree(shapely.linestrings(np.stack((border.vertices, border.vertices[after]), axis=1)))
-    vertex, edge = tree.query(shapely.points(border.vertices), predicate="dwithin", distance=width)
-    short = np.hypot(border.edges[:, 0], border.edges[:, 1]) <= width
-    beside = (edge == vertex) | (edge == before[vertex])
-    beside |= short[vertex] & (edge == after[vertex])
-    beside |= short[before[vertex]] & (edge == before[before[vertex]])
+    lines = shapely.linestrings(np.stack((border.vertices, border.vertices[border.after]), axis=1))
+    vertex, edge = shapely.STRtree(lines).query(shapely.points(border.vertices), predicate="dwithin", distance=width)
+    beside = (edge == vertex) | (edge == border.before[vertex])
     return vertex[~beside], edge[~beside]
 
 

@@ -22,6 +22,7 @@ Join = Literal["mitre", "round"]
 MITRE_LIMIT = 5.0  # how many clearances a corner may stick out before its tip is cut
 STRAIGHT = 1e-9  # rad; smaller turns are none
 ARC = math.pi / 16  # rad; the longest arc one corner of a round join stands for
+WITHIN = math.cos(ARC / 2)  # obstacles grown with round joins by this share of a clearance lie within the clearance
 
 
 def grow(obstacles: Sequence[shapely.Geometry], clearance: float, join: Join = "mitre") -> list[shapely.Polygon]:
