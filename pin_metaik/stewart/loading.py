@@ -15,6 +15,14 @@ def load_kernels() -> ModuleType:
 
 
 @cache
+def load_bounds() -> ModuleType:
+    """The loops that bound a workspace, likewise."""
+    from pin_metaik.stewart import bounds
+
+    return bounds
+
+
+@cache
 def load_newton() -> ModuleType:
     """The loop of forward kinematics, likewise."""
     from pin_metaik.stewart import newton

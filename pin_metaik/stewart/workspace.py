@@ -22,14 +22,22 @@ class EmptyWorkspace(InvalidGeometry):
 
     Attributes:
         reasons: How many poses each limit forbids.
+        room: A box (2, 3) in m that holds whatever the limits may allow within the ranges of the grid, between its
+            positions; None: they allow nothing there, which is proved.
     """
 
-    def __init__(self, reasons: dict[PoseState, int]) -> None:
-        self.reasons = reasons
+    def __init__(self, reasons: dict[PoseState, int], room: Array | None = None) -> None:
+        self.reasons, self.room = reasons, room
         total = sum(reasons.values())
-        why = ", ".join(f"{count} are {state.words}" for state, count in reasons.items())
-        hint = "move the grid or widen the limits"
-        super().__init__(f"the workspace is empty: of {total} poses of the grid {why}; {hint}")
+        why = f"of {total} poses of the grid {', '.join(f'{n} are {state.words}' for state, n in reasons.items())}"
+        if room is None:
+            super().__init__(f"the workspace is empty: {why}; move the grid or widen the limits")
+        else:
+            ends = ", ".join(f"{name} {low:.6g} to {high:.6g}" for name, low, high in zip("xyz", *room, strict=True))
+            super().__init__(f"no pose of the grid is within the limits: {why}; look with a finer grid at {ends} m")
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (self.reasons, self.room)
 
 
 class Verdict(StrEnum):
@@ -82,6 +90,11 @@ class Workspace:
         regular: NDArray[np.bool_] = self.reached & (self.states != PoseState.SINGULAR)
         return regular
 
+    @cached_property
+    def cells_reached(self) -> int:
+        """How many cells carry the figures: those reached in at least one of the orientations."""
+        return int(self.reached.any(axis=-1).sum())
+
     @property
     def counts(self) -> dict[PoseState, int]:
         """How many poses have each state; states that do not occur are left out."""
@@ -100,7 +113,7 @@ class Workspace:
     @property
     def volume(self) -> float:
         """Volume of the positions reached in at least one of the orientations, m^3."""
-        return float(self.reached.any(axis=-1).sum() * self.cells.volume)
+        return self.cells_reached * self.cells.volume
 
     @property
     def volume_of_all(self) -> float:
