@@ -150,7 +150,7 @@ def corners(
 
 @jit("void(f8[:,:,::1], f8[::1], f8[:,::1], f8[:,::1])")
 def reach(spheres: Floats, limits: Floats, ends: Floats, box: Floats) -> None:
-    """The exact box (2, 3) of P within the lengths of the legs and the ends (2, 3), in any of the orientations (o, n, 3).
+    """The exact box (2, 3) of P within the legs' lengths and the ends (2, 3), in any of the orientations (o, n, 3).
 
     Ends may be infinite. Where there is no such P, the box is left crossed: its first row is above its second.
     """
@@ -242,7 +242,7 @@ def cover(
     counts: Ints,
     out: Floats,
 ) -> int:
-    """Cells of a box (2, 3), so many (3,) along each axis, that no limit rules out: how many, and the box round them."""
+    """Cells of a box (2, 3), counts (3,) along its axes, that no limit rules out: how many, and the box round them."""
     n = base.shape[0]
     legs, size, place = np.empty((n, 3)), np.empty(3), np.empty(3)
     radius = 0.0

@@ -28,3 +28,11 @@ def load_newton() -> ModuleType:
     from pin_metaik.stewart import newton
 
     return newton
+
+
+@cache
+def load_homotopy() -> ModuleType:
+    """The loop that follows complex assemblies, likewise."""
+    from pin_metaik.stewart import homotopy
+
+    return homotopy
