@@ -2,8 +2,8 @@
 
 Complex solutions of the equations are followed from dimensions drawn at random, where all 40 are known, to those of
 the platform; see ``homotopy``. Whether none is missing is then a matter of counting: a platform has at most as many
-separate assemblies, real and complex, as it has for complex lengths in general, and that is 40 (Ronga and Vust 1995) or,
-where joints are shared or stand symmetrically, what is found of them for such lengths.
+separate assemblies, real and complex, as it has for complex lengths in general, and that is 40 (Ronga and Vust 1995)
+or, where joints are shared or stand symmetrically, what is found of them for such lengths.
 """
 
 from __future__ import annotations
@@ -147,9 +147,9 @@ def _general_start() -> Start:
     rng = as_generator(SEED)
     q, p, ends = _complex(rng, 4), _complex(rng, 3), _ends(rng)
     g = 0.5 * np.concatenate(([-p @ q[1:]], q[0] * p + np.cross(p, q[1:])))  # 2 g = p q
-    v = p + ends[:, 3:] @ _homogeneous(q).T / (q @ q) - ends[:, :3]
-    legs = np.column_stack((ends, (v * v).sum(axis=1)))
-    points: Complexes = np.concatenate((q, g))[None]
+    v: Complexes = p + ends[:, 3:] @ _homogeneous(q).T / (q @ q) - ends[:, :3]
+    legs: Complexes = np.column_stack((ends, (v * v).sum(axis=1)))
+    points: Complexes = np.concatenate((q, g))[None].astype(complex)
     for _ in range(LOOPS):
         if len(points) == MOST:
             break

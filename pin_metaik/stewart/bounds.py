@@ -197,6 +197,15 @@ def reach(spheres: Floats, limits: Floats, ends: Floats, box: Floats) -> None:
             box[0, c], box[1, c] = min(box[0, c], here[0, c] + middle[c]), max(box[1, c], here[1, c] + middle[c])
 
 
+@inline
+def beyond_cone(d: float, along: float, cos: float) -> float:
+    """How far a point is from a cone, at distance d from its tip and ``along`` its axis; 0 within it."""
+    if along >= d * cos:
+        return 0.0
+    across, sin = math.sqrt(max(d * d - along * along, 0.0)), math.sqrt(1.0 - cos * cos)
+    return across * cos - along * sin if along * cos + across * sin > 0.0 else d
+
+
 @shared
 def ruled_out(
     base: Floats,
@@ -209,10 +218,9 @@ def ruled_out(
 ) -> bool:
     """Whether no position within this radius (m) is allowed, from the legs (n, 3) of the one in the middle.
 
-    Moving P by s changes the length of a leg, and the distance between two, by at most s, and ``z'v - |v| cos`` of an
-    angle's limit by at most s (1 + |cos|).
+    Moving P by s changes the length of a leg, and the distance between two, by at most s; and a joint's angle is
+    allowed where the end of its leg lies in a cone.
     """
-    low, high = radius * (1.0 + abs(limits[2])), radius * (1.0 + abs(limits[3]))
     for i in range(legs.shape[0]):
         d, at_base, at_platform = 0.0, 0.0, 0.0
         for c in range(3):
@@ -222,7 +230,7 @@ def ruled_out(
         d = math.sqrt(d)
         if d < limits[0] - radius or d > limits[1] + radius:
             return True
-        if at_base - d * limits[2] < -low or at_platform - d * limits[3] < -high:
+        if beyond_cone(d, at_base, limits[2]) > radius or beyond_cone(d, at_platform, limits[3]) > radius:
             return True
     for p in range(pairs.shape[0]):
         if segment_distance(base, legs, pairs[p, 0], pairs[p, 1]) < limits[4] - radius:

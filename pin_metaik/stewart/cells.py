@@ -12,7 +12,7 @@ from pin_metaik.stewart.grid import Grid
 from pin_metaik.stewart.limits import LegLimits
 from pin_metaik.stewart.loading import load_bounds
 
-COVER = 8
+COVER = 12
 """Cells along each axis of the covers that find the room which joints and the distance between legs leave."""
 SHRINKS = 0.9
 """A box is covered again if it shrank to less than this share along any axis."""

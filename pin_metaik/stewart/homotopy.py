@@ -8,10 +8,10 @@ A pose is a pair of quaternions (q, g), up to a common factor: q turns, and ``p 
 
 Lengths are taken from the ends of the first leg, so that b and m are zero for it and its equation is
 ``g'g = d^2 / 4 q'q``; subtracted from the others, it leaves nothing in them that is not small where q is, far from the
-base. Six of them and ``q'g = 0`` have at most 40 separate solutions with ``q'q != 0``, real and complex together; those with
-``q'q = 0`` are at infinity. When b, m and d^2 go straight from complex numbers drawn at random to those of a platform,
-the solutions move along smooth paths, and every separate assembly of the platform is the end of one of them (Sommese
-and Wampler 2005, 7.1).
+base. Six of them and ``q'g = 0`` have at most 40 separate solutions with ``q'q != 0``, real and complex together; those
+with ``q'q = 0`` are at infinity. When b, m and d^2 go straight from complex numbers drawn at random to those of a
+platform, the solutions move along smooth paths, and every separate assembly of the platform is the end of one of them
+(Sommese and Wampler 2005, 7.1).
 
 ``u`` (8,) is (q0, qv, g0, gv) of length 1; ``legs`` (6, 7) holds b, m and d^2 of each leg; b = m = 0 for the first.
 """

@@ -13,7 +13,7 @@ from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.cells import Cells
 from pin_metaik.stewart.conditioning import Dexterity
-from pin_metaik.stewart.geometry import Geometry
+from pin_metaik.stewart.geometry import MOST_LEGS, Geometry
 from pin_metaik.stewart.limits import LegLimits, PoseState
 
 
@@ -45,6 +45,8 @@ class Verdict(StrEnum):
 
     REGULAR = "REGULAR"
     """No pose reached is singular, and det J has one sign."""
+    UNDERCONSTRAINED = "UNDERCONSTRAINED"
+    """Fewer than six legs: between universal and spherical joints they leave the platform freedoms everywhere."""
     CROSSES_SINGULARITY = "CROSSES_SINGULARITY"
     """Some poses reached are singular, or det J changes sign between them."""
     SINGULAR = "SINGULAR"
@@ -108,6 +110,8 @@ class Workspace:
         sides = (PoseState.POSITIVE in counts) + (PoseState.NEGATIVE in counts)
         if sides == 0:
             return Verdict.SINGULAR
+        if self.geometry.n < MOST_LEGS:
+            return Verdict.UNDERCONSTRAINED
         return Verdict.CROSSES_SINGULARITY if sides == 2 or PoseState.SINGULAR in counts else Verdict.REGULAR
 
     @property
@@ -119,6 +123,11 @@ class Workspace:
     def volume_of_all(self) -> float:
         """Volume of the positions reached in every one of the orientations, m^3."""
         return float(self.reached.all(axis=-1).sum() * self.cells.volume)
+
+    @property
+    def at_one_position(self) -> bool:
+        """Whether this is the orientations reached at a single position, which have no volume."""
+        return self.states.shape[:3] == (1, 1, 1) and self.states.shape[3] > 1
 
     @property
     def orientations(self) -> Array:
@@ -175,4 +184,5 @@ class Workspace:
     def __str__(self) -> str:
         gdi = "no GDI" if self.gdi is None else f"GDI {self.gdi:.4f}"
         share = f"{self.reached.sum()} of {self.reached.size} poses reached"
-        return f"{self.verdict}: {gdi}, {1e6 * self.volume:.4g} cm3, {share}"
+        size = "at one position" if self.at_one_position else f"{1e6 * self.volume:.4g} cm3"
+        return f"{self.verdict}: {gdi}, {size}, {share}"
