@@ -19,7 +19,7 @@ class Designed:
 
     Attributes:
         mechanism: The best mechanism found, with the settings it was found with. If none was feasible, the one given.
-        score: Its fitness on the grid of the task, and the two parts of it; None if no design was feasible.
+        score: Its fitness, and the two parts of it, by a few thousand cells; None if no design was feasible.
         search: The search itself: why it ended, evaluations, seconds, trace.
     """
 
@@ -46,6 +46,24 @@ class Designed:
     def __str__(self) -> str:
         found = f"fitness {self.score.fitness:.4f}" if self.score else "no feasible design"
         return f"{self.mechanism.name}: {found} after {self.search.evaluations} designs in {self.search.seconds:.3g} s"
+
+
+class _Measured:
+    """A fitness that measures whatever would be the best design again, by more cells, before it may be.
+
+    A coarse grid flatters some designs, and a search finds these. So the best is only ever what a fine one says.
+    """
+
+    def __init__(self, fitness: Fitness) -> None:
+        self.fitness, self.best = fitness, np.inf
+
+    def __call__(self, X: Array) -> Array:
+        costs = self.fitness(X)
+        for k in np.argsort(costs, kind="stable"):
+            if costs[k] < self.best:
+                costs[k] = self.fitness.cost(X[k], fine=True)
+                self.best = min(self.best, float(costs[k]))
+        return costs
 
 
 def design(
@@ -76,7 +94,7 @@ def design(
             watch(search.run.evaluations, task.evaluations)
 
     found = minimize(
-        fitness,
+        _Measured(fitness),
         fitness.variables.box,
         task.algorithm,
         Budget(evaluations=task.evaluations),
@@ -88,5 +106,5 @@ def design(
     if found.cost >= UNUSABLE:
         return Designed(mechanism, None, found)
     geometry, limits = fitness.build(fitness.variables.dimensions(found.x))
-    score = fitness.score(fitness.workspace(geometry, limits))
+    score = fitness.score(fitness.workspace(geometry, limits, fine=True))
     return Designed(replace(mechanism, geometry=geometry, limits=limits), score, found)
