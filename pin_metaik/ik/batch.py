@@ -13,7 +13,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.collision import CollisionWorld
+from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.ik.problem import check_world
 from pin_metaik.ik.result import IKResult, IKStatus
@@ -40,7 +40,9 @@ class IKBatch:
         seconds: Time the whole batch took, s.
         chain: The chain.
         targets: What was asked.
-        world: The world that nothing must collide in, if one was given.
+        world: The world that nothing must collide in, if one was given. A pickle leaves it behind, as it has all meshes
+            in it.
+        contacts: What collides, the deepest first, by number of the target; of those that are met in collision only.
     """
 
     q: NDArray[np.float64]
@@ -53,12 +55,16 @@ class IKBatch:
     chain: Chain = field(repr=False)
     targets: Sequence[TargetLike] | NDArray[np.float64] = field(repr=False)
     world: CollisionWorld | None = field(default=None, repr=False)
+    contacts: dict[int, tuple[Contact, ...]] = field(default_factory=dict, repr=False)
 
     def __len__(self) -> int:
         return len(self.q)
 
+    def __getstate__(self) -> dict[str, object]:
+        """Pickle without the world: kilobytes rather than megabytes."""
+        return {**self.__dict__, "world": None}
+
     def __getitem__(self, i: int) -> IKResult:
-        world, collides = self.world, self.status[i] is IKStatus.IN_COLLISION
         return IKResult(
             self.q[i],
             self.status[i],
@@ -68,8 +74,8 @@ class IKBatch:
             self.seconds / len(self),
             self.chain,
             self.targets[i],
-            world=world,
-            contacts=world.pairs_in_collision(self.q[i]) if world is not None and collides else (),
+            world=self.world,
+            contacts=self.contacts.get(i % len(self), ()),
         )
 
     def __iter__(self) -> Iterator[IKResult]:
@@ -125,6 +131,8 @@ def solve_ik_batch(
         batch.q[i], batch.success[i], batch.status[i] = result.q, result.success, result.status
         batch.position_error[i], batch.orientation_error[i] = result.position_error, result.orientation_error
         batch.evaluations[i] = result.evaluations
+        if result.contacts:
+            batch.contacts[i] = result.contacts
 
     settings = solver.lane if array is not None and len(chain.frames) == 1 else None
     workers = workers or os.cpu_count() or 1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import count
 from time import perf_counter
 
@@ -37,7 +37,7 @@ class IKSolutions:
             has endlessly many solutions: then this is a sample, and False.
         evaluations: Forward kinematics computed.
         seconds: Time taken, s.
-        problem: What was asked.
+        problem: What was asked; out of a pickle, without its world, which has all meshes in it.
     """
 
     q: NDArray[np.float64]
@@ -45,6 +45,10 @@ class IKSolutions:
     evaluations: int
     seconds: float
     problem: IKProblem = field(repr=False)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Pickle without the world: kilobytes rather than megabytes."""
+        return {**self.__dict__, "problem": replace(self.problem, world=None)}
 
     @property
     def x(self) -> NDArray[np.float64]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
@@ -63,6 +63,10 @@ class Robot:
             InvalidModel: If a mesh is missing or unreadable; the message names it.
         """
         return self._geometry(pin.GeometryType.VISUAL)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Pickle without the geometry: megabytes, read again on first use."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @property
     def free_mimics(self) -> tuple[str, ...]:
