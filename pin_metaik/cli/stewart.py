@@ -14,6 +14,7 @@ from rich.console import Console
 
 from pin_metaik import stewart
 from pin_metaik.errors import InvalidTarget
+from pin_metaik.interrupts import kept
 from pin_metaik.optimize import ALGORITHMS, make
 from pin_metaik.stewart import Mechanism, Verdict
 from pin_metaik.stewart.conditioning import NORMS
@@ -61,7 +62,7 @@ def analyse(
         raise InvalidTarget("a way needs both ends: give --pose as well as --to")
     way = None if to is None or T is None else stewart.straight(T, _pose(mechanism, to), seconds)
     with stewart.progress_bar("surveying") as watch:
-        workspace = mechanism.survey(watch=watch)
+        workspace = kept(lambda: mechanism.survey(watch=watch))
     if as_json:
         print(json.dumps(values(mechanism, workspace), allow_nan=False))
     else:
@@ -114,7 +115,7 @@ def design(
         task = replace(mechanism.task, **changed)  # type: ignore[arg-type]  # each value is of its own field's type
         mechanism = replace(mechanism, task=task)
     with stewart.progress_bar("designing") as watch:
-        found = stewart.design(mechanism, watch=watch)
+        found = kept(lambda: stewart.design(mechanism, watch=watch))
     workspace = found.mechanism.survey() if found.success else None
     if as_json:
         score = None if found.score is None else vars(found.score)

@@ -34,7 +34,7 @@ class IKStatus(StrEnum):
     IN_COLLISION = "IN_COLLISION"
     """The target is met only in collision."""
     STOPPED = "STOPPED"
-    """Time was up, or the search was interrupted."""
+    """Time was up. Ctrl-C is no status: it goes through to the caller."""
 
 
 @dataclass(eq=False, slots=True)  # not frozen: that takes four times as long to make, a tenth of a quick solve
@@ -122,7 +122,7 @@ class IKResult:
                 shown = "; ".join(map(str, self.contacts[:3])) + ("; ..." if len(self.contacts) > 3 else "")
                 return f"met only in collision; the least deep found: {shown}"
             case IKStatus.STOPPED:
-                return "stopped before it was solved; this is the best so far"
+                return "time was up before it was solved; this is the best so far"
 
     def verify(self) -> bool:
         """Judge ``q`` again by Pinocchio and the limits, and by coal in the world as it is now.

@@ -9,12 +9,13 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.interrupts import Interrupted
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.cells import Cells, cells_of
 from pin_metaik.stewart.conditioning import DEFAULT, Dexterity, best_length, measure
 from pin_metaik.stewart.geometry import Geometry
 from pin_metaik.stewart.grid import Grid
-from pin_metaik.stewart.limits import LegLimits, PoseState
+from pin_metaik.stewart.limits import LegLimits
 from pin_metaik.stewart.loading import load_kernels
 from pin_metaik.stewart.workspace import EmptyWorkspace, Workspace
 
@@ -34,8 +35,6 @@ def survey(
 ) -> Workspace:
     """Judge every pose of a grid.
 
-    Ctrl-C ends the survey early and returns what was seen, if any pose of it was reached.
-
     Args:
         geometry: The platform.
         limits: What its legs allow.
@@ -46,6 +45,7 @@ def survey(
     Raises:
         EmptyWorkspace: No pose of the grid is within the limits.
         InvalidGeometry: The home of the limits gives a joint no axis.
+        Interrupted: Ctrl-C, once a pose was reached; its ``result`` is the workspace as far as it was seen.
     """
     cells = grid if isinstance(grid, Cells) else cells_of(grid or Grid(), geometry, limits)
     length = dexterity.length if not isinstance(dexterity.length, str) else geometry.platform_radius
@@ -53,8 +53,10 @@ def survey(
     try:
         judge_cells(geometry, limits, cells, length, dexterity, states, nu, watch)
     except KeyboardInterrupt:
-        if not ((states >= PoseState.POSITIVE) & (states <= PoseState.SINGULAR)).any():
+        seen = Workspace(geometry, limits, cells, dexterity, length, states, nu)
+        if not seen.reached.any():
             raise
+        raise Interrupted(with_best_length(seen)) from None
     found = Workspace(geometry, limits, cells, dexterity, length, states, nu)
     if not found.reached.any():
         raise EmptyWorkspace(found.counts)

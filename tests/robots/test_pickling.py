@@ -16,8 +16,8 @@ from pin_metaik.robots.library import catalogue, example_robots
 
 AXIS = np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0)
 KINDS = {
-    **{name: () for name in ("RX", "RY", "RZ", "PX", "PY", "PZ", "RUBX", "RUBY", "RUBZ")},
-    **{name: (0.3,) for name in ("HX", "HY", "HZ")},
+    **dict.fromkeys(("RX", "RY", "RZ", "PX", "PY", "PZ", "RUBX", "RUBY", "RUBZ"), ()),
+    **dict.fromkeys(("HX", "HY", "HZ"), (0.3,)),
     "RevoluteUnaligned": (AXIS,),
     "PrismaticUnaligned": (AXIS,),
 }
@@ -83,7 +83,7 @@ def test_a_follower_that_pinocchio_cannot_make_comes_from_its_urdf_or_is_refused
     model = mik.load_robot(path).model
     assert len(model.mimicking_joints) == 1
     assert_array_equal(placements(pickle.loads(pickle.dumps(model))), placements(model))
-    with pytest.raises(InvalidModel, match="'k' .*cannot|cannot .*'k'"):
+    with pytest.raises(InvalidModel, match=r"cannot be pickled.*'k'"):
         pickle.dumps(pin.buildModelFromXML(CONTINUOUS, mimic=True))
 
 
