@@ -1,7 +1,7 @@
 """One process at a time in a folder: a lock that ends with the process that holds it, however that ends.
 
-It is the kernel's (``flock``), on a file that is there while it is held. Where there is no ``fcntl``, as on Windows, and
-on file systems without locks, nothing is locked.
+It is the kernel's (``flock``), on a file that is there while it is held. Where there is no ``fcntl``, as on Windows,
+and on file systems without locks, nothing is locked.
 """
 
 from __future__ import annotations
