@@ -16,6 +16,7 @@ from rich.console import Console
 from pin_metaik import stewart
 from pin_metaik.cli.settings import configured
 from pin_metaik.errors import InvalidSetting, InvalidTarget
+from pin_metaik.interrupts import kept
 from pin_metaik.optimize import ALGORITHMS
 from pin_metaik.stewart import Mechanism, Verdict
 from pin_metaik.stewart.conditioning import NORMS
@@ -78,7 +79,7 @@ def analyse(
         raise InvalidTarget("a way needs both ends: give --pose as well as --to")
     way = None if to is None or T is None else stewart.straight(T, _pose(mechanism, to), seconds)
     with stewart.progress_bar("surveying") as watch:
-        workspace = mechanism.survey(watch=watch)
+        workspace = kept(lambda: mechanism.survey(watch=watch))
     if picture is not None:
         stewart.save_picture(stewart.draw(mechanism, workspace, T), picture)
     if as_json:
@@ -150,7 +151,7 @@ def design(
         mechanism = replace(mechanism, task=replace(mechanism.task, **changed))
     _can_write(output, history, picture)
     with stewart.progress_bar("designing") as watch:
-        found = stewart.design(mechanism, watch=watch)
+        found = kept(lambda: stewart.design(mechanism, watch=watch))
     workspace = found.mechanism.survey() if found.success else None
     if history is not None:
         np.savetxt(history, found.history, "%.17g", ",", header="designs,fitness", comments="")

@@ -54,6 +54,7 @@ def centre(geometry: Any) -> NDArray[np.float64]:
         points: NDArray[np.float64] = np.array(geometry.points())
         return points.mean(axis=0, keepdims=True)
     if is_flat(geometry):
-        return float(geometry.d) * np.array(geometry.n)[None]
+        surface: NDArray[np.float64] = float(geometry.d) * np.array(geometry.n)[None]
+        return surface
     middle: NDArray[np.float64] = box_of(geometry)[None, :3]
     return middle.copy()

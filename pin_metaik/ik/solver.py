@@ -100,17 +100,14 @@ class IKSolver:
         ledger = Ledger(problem.whole if problem.loose else problem, self.budget, began, x0)
         if first is not None:
             ledger.add(first)
-        try:
-            if self.select != "first":
-                self._choose(problem, x0, base, rng, ledger)
-            if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
-                self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
-            if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
-                self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
-            if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None:
-                ledger.add(self._refiner.settle(ledger.problem, ledger.x, ledger.left()))
-        except KeyboardInterrupt:
-            ledger.interrupted = True
+        if self.select != "first":
+            self._choose(problem, x0, base, rng, ledger)
+        if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
+            self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
+        if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
+            self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
+        if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None:
+            ledger.add(self._refiner.settle(ledger.problem, ledger.x, ledger.left()))
         q = base.copy()
         chain.coordinates.write(ledger.x, q)
         verdict = problem.verdict(q)
@@ -198,8 +195,9 @@ class IKSolver:
         if ledger.over(share) or (ledger.spent + begun and problem.gap > 0.0):
             return
         for starts in batches:
+            before = ledger.spent
             ledger.add(refine(problem, starts, ledger.left(share)))
-            if ledger.over(share) or problem.gap > 0.0:
+            if ledger.over(share) or problem.gap > 0.0 or ledger.spent == before:
                 return
             refine = refiner.refine
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pin_metaik.interrupts import wrapped
 from pin_metaik.mobile.motion import speed_kernels as kernels
 from pin_metaik.mobile.motion.route import Route
-from pin_metaik.optimize import AskTell, Box, Budget, Metaheuristic, minimize
+from pin_metaik.optimize import AskTell, Box, Budget, Metaheuristic, Status, minimize
 from pin_metaik.optimize.space import Array
 
 COARSE, FINE = 101, 17  # speeds a corner, in the first round and in those that look closer
@@ -105,6 +106,9 @@ def searched_speeds(
         tangents: Tangent lengths (k, n) at speeds V (k, n), if not the true ones.
         callback: Called after every generation.
         lower: Speeds below this are a stop.
+
+    Raises:
+        Interrupted: Ctrl-C, after the first generation; its ``result`` is the best speeds so far.
     """
     n, stop = len(route.caps), route.stop_and_turn
     if n == 0:
@@ -120,7 +124,8 @@ def searched_speeds(
         lack = route.lack(V, lengths)
         return np.where(np.isfinite(T), T, 2 * stop + lack)
 
-    found = minimize(
-        costs, Box(np.zeros(n), route.caps), algorithm, budget, rng, seeds=np.zeros((1, n)), callback=callback
+    box, stopping = Box(np.zeros(n), route.caps), np.zeros((1, n))
+    return wrapped(
+        lambda: minimize(costs, box, algorithm, budget, rng, seeds=stopping, callback=callback),
+        lambda found: Speeds(driven(found.x), found.cost, found.evaluations, found.status is Status.INTERRUPTED),
     )
-    return Speeds(driven(found.x), found.cost, found.evaluations, found.status.name == "INTERRUPTED")

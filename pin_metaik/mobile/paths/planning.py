@@ -8,13 +8,14 @@ from time import perf_counter
 import numpy as np
 
 from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.interrupts import wrapped
 from pin_metaik.mobile.errors import NoPath
 from pin_metaik.mobile.paths.fitness import Fitness, make_fitness
 from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.paths.problem import PathProblem
 from pin_metaik.mobile.paths.result import PathPlan, PathStatus
 from pin_metaik.mobile.world.scene import Scene
-from pin_metaik.optimize import ALGORITHMS, AskTell, Budget, Metaheuristic, Status, make, minimize
+from pin_metaik.optimize import ALGORITHMS, AskTell, Budget, Metaheuristic, Result, Status, make, minimize
 from pin_metaik.optimize.ga import GA
 from pin_metaik.optimize.pso import PSO
 from pin_metaik.optimize.settings import whole
@@ -67,6 +68,7 @@ def plan_path(
         NoPath: There is no way, for the exact planner and ``seeded``.
         UnknownName: No planner or fitness of that name.
         InvalidSetting: Fewer than one via point, or too few for the seed.
+        Interrupted: Ctrl-C, after the first generation; its ``result`` is the plan with the best path so far.
     """
     if isinstance(problem, Scene):
         problem = PathProblem.of(problem)
@@ -79,7 +81,15 @@ def plan_path(
     algorithm = _algorithm(method)
     objective = make_fitness(fitness).on(problem.space, problem.scene.start, problem.scene.goal)
     seeds = _seed(problem, via) if seeded else None
-    found = minimize(objective, problem.box(via), algorithm, budget, rng, seeds=seeds, trace=trace, callback=callback)
+    box, name = problem.box(via), method if isinstance(method, str) else type(method).__name__
+    return wrapped(
+        lambda: minimize(objective, box, algorithm, budget, rng, seeds=seeds, trace=trace, callback=callback),
+        lambda found: _searched(problem, found, name, seed),
+    )
+
+
+def _searched(problem: PathProblem, found: Result, method: str, seed: int | None) -> PathPlan:
+    """The plan that a search ends with."""
     path = problem.through(found.x)
     try:
         optimum: float | None = problem.optimum.length
@@ -90,7 +100,7 @@ def plan_path(
         PathStatus.FREE if problem.space.holds(path.points) else PathStatus.COLLIDES,
         optimum,
         found.cost,
-        method if isinstance(method, str) else type(method).__name__,
+        method,
         found.evaluations,
         found.seconds,
         seed,
