@@ -13,8 +13,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, instance
 from pin_metaik.collision import CollisionWorld, Contact
-from pin_metaik.errors import InvalidConfiguration, InvalidSetting, InvalidTarget
+from pin_metaik.errors import InvalidConfiguration, InvalidTarget
 from pin_metaik.ik.problem import check_world
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.sharing import share_out, slices
@@ -23,6 +24,7 @@ from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
 from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import LANE, Chain
+from pin_metaik.optimize.settings import whole
 from pin_metaik.randomness import Rng
 
 Rows: TypeAlias = slice | NDArray[np.int64]
@@ -114,10 +116,11 @@ def solve_ik_batch(
         InvalidSetting: If ``workers`` is less than one, or the world is another model's than the chain.
     """
     began = perf_counter()
-    if workers is not None and workers < 1:
-        raise InvalidSetting(f"workers is at least 1, got {workers}")
+    if workers is not None:
+        whole("workers", workers, 1)
     check_world(chain, world)
-    solver = solver or DEFAULT_SOLVER
+    solver = DEFAULT_SOLVER if solver is None else solver
+    instance(IKSolver, solver=solver)
     seed = int(rng.integers(2**62)) if isinstance(rng, np.random.Generator) else rng
     array = _as_array(targets)
     asked = cast(Sequence[TargetLike], targets) if array is None else array
@@ -140,7 +143,7 @@ def solve_ik_batch(
             batch.contacts[i] = result.contacts
 
     settings = solver.lane if array is not None and len(chain.frames) == 1 else None
-    workers = workers or os.cpu_count() or 1
+    workers = min(workers or os.cpu_count() or 1, max(k, 1))
     left: Iterable[int] = range(k)
     if array is not None and settings is not None and k:
         poses, starts = _as_poses(array), drawn(chain, seed, 0, LANE)
@@ -193,7 +196,7 @@ def _as_array(targets: ArrayLike | Sequence[TargetLike]) -> NDArray[np.float64] 
         return None
     try:
         array = np.array(targets, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         if isinstance(targets, Sequence):
             return None
         raise InvalidTarget(f"targets are poses (k, 4, 4), positions (k, 3) or a list, got {targets!r}") from None
@@ -217,7 +220,7 @@ def _bases(chain: Chain, q0: ArrayLike | None, k: int) -> NDArray[np.float64]:
     """Configurations to start from (k, nq), inside the limits."""
     if q0 is None:
         return np.repeat(chain.reference[None], k, axis=0)
-    given = np.asarray(q0, dtype=float)
+    given = array("q0", q0, "...", chain.model.nq, error=InvalidConfiguration)
     if given.ndim == 2 and given.shape == (k, chain.model.nq):
         return chain.inside(given)
     if given.ndim == 2:

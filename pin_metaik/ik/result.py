@@ -87,6 +87,9 @@ class IKResult:
         """Whether the target is met."""
         return self.status is IKStatus.SOLVED
 
+    def __bool__(self) -> bool:
+        return self.success
+
     @property
     def x(self) -> NDArray[np.float64]:
         """(n,) the chain's coordinates at ``q``."""
@@ -145,5 +148,5 @@ class IKResult:
     def __str__(self) -> str:
         return (
             f"{self.status}: {self.position_error:.3g} m, {self.orientation_error:.3g} rad from the target after "
-            f"{self.evaluations} evaluations in {1e3 * self.seconds:.4g} ms"
+            f"{self.evaluations} evaluation{'s' * (self.evaluations != 1)} in {1e3 * self.seconds:.4g} ms"
         )

@@ -12,6 +12,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked, instance
 from pin_metaik.errors import InvalidBudget, InvalidSetting, UnknownName
 from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.nullspace import slide
@@ -34,6 +35,7 @@ CHOICE, CHOICE_SHARE = 64, 0.5  # solutions to choose from at most, and the shar
 RESERVE = 0.05  # of the budget, to settle down at the nearest pose when none is near enough
 
 
+@checked
 @dataclass(frozen=True)
 class IKSolver:
     """How to search: where starts come from, what refines them, and how much may be spent.
@@ -92,6 +94,8 @@ class IKSolver:
         ``first`` is what the fast lane came to, if it has tried the first starts already.
         """
         began = perf_counter()
+        instance(IKProblem, problem=problem)
+        instance(Refinement | None, first=first)
         if q0 is not None:
             problem = problem.at(q0)
         chain = problem.chain

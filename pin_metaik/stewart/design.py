@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.interrupts import wrapped
 from pin_metaik.optimize import AskTell, Budget, Result, Status, minimize
 from pin_metaik.optimize.space import Array
@@ -32,6 +33,9 @@ class Designed:
     def success(self) -> bool:
         """Whether a feasible design was found. One found before an interruption counts."""
         return self.score is not None
+
+    def __bool__(self) -> bool:
+        return self.success
 
     @property
     def interrupted(self) -> bool:
@@ -67,6 +71,7 @@ class _Measured:
         return costs
 
 
+@checked
 def design(
     mechanism: Mechanism, *, rng: int | np.random.Generator | None = None, watch: Watch | None = None
 ) -> Designed:

@@ -9,6 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.interrupts import Interrupted
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.cells import Cells, cells_of, finer_cells, room
@@ -33,6 +34,7 @@ SPARE = 1.2
 """How many more cells than needed a finer grid aims at, so that it need not be made finer once more."""
 
 
+@checked
 def survey(
     geometry: Geometry,
     limits: LegLimits,

@@ -1,4 +1,4 @@
-"""An independent shortest path: every vertex to every vertex, tested by shapely, no pruning; and scenes to try it on."""
+"""An independent shortest path, every vertex to every vertex tested by shapely, without pruning; and scenes for it."""
 
 from collections.abc import Callable
 

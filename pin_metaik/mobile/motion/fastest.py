@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.errors import Blocked, NoPath
 from pin_metaik.mobile.motion.result import TrajectoryPlan
@@ -16,6 +17,7 @@ from pin_metaik.mobile.world.scene import Scene
 MARGINS = (0.05, 0.1, 0.2, 0.3)  # m
 
 
+@checked
 def fastest_trajectory(
     scene: Scene,
     vehicle: SynchroDrive = NOMAD_200,

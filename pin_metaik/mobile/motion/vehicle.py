@@ -6,12 +6,14 @@ import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.mobile.files import number, only, read_json
 
 INCH = 0.0254  # m
 
 
+@checked
 @dataclass(frozen=True)
 class SynchroDrive:
     """What a robot can do: ``x' = v cos theta``, ``y' = v sin theta``, ``theta' = omega``, and four limits.
@@ -61,6 +63,7 @@ VEHICLES = {vehicle.name: vehicle for vehicle in (NOMAD_200, NOMAD_200_DRIVER)}
 LIMITS = ("v_max", "a_max", "omega_max", "alpha_max", "radius")
 
 
+@checked
 def load_vehicle(source: str | Path) -> SynchroDrive:
     """A robot by name, or from a JSON file.
 

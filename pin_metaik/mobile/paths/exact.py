@@ -11,6 +11,7 @@ from heapq import heappop, heappush
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.mobile.errors import NoPath
 from pin_metaik.mobile.paths import visibility_kernels as kernels
 from pin_metaik.mobile.paths.path import Path
@@ -23,6 +24,7 @@ from pin_metaik.optimize.space import Array
 Edges = set[tuple[int, int]]
 
 
+@checked
 def shortest_path(space: FreeSpace, start: Point, goal: Point, visibility: Visibility | None = None) -> Path:
     """The shortest path in a free space.
 

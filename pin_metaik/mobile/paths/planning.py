@@ -7,6 +7,7 @@ from time import perf_counter
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.interrupts import wrapped
 from pin_metaik.mobile.errors import NoPath
@@ -32,6 +33,7 @@ PAPER_BUDGET = Budget(evaluations=50 * 100)
 PAPER_VIA = 5
 
 
+@checked
 def plan_path(
     problem: PathProblem | Scene,
     method: str | Metaheuristic = EXACT,
@@ -110,6 +112,7 @@ def _searched(problem: PathProblem, found: Result, method: str, seed: int | None
     )
 
 
+@checked
 def plan_alternatives(problem: PathProblem | Scene, count: int) -> list[PathPlan]:
     """The shortest path and those that go another way round, one for each homotopy class, shortest first.
 

@@ -74,6 +74,9 @@ class PathPlan:
         """The same: a path that collides is no path."""
         return self.collision_free
 
+    def __bool__(self) -> bool:
+        return self.success
+
     @property
     def gap(self) -> float | None:
         """How much longer than the optimum it is, as a share of that; None for a path that is none."""

@@ -16,6 +16,7 @@ import shapely
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from pin_metaik.arguments import checked
 from pin_metaik.mobile.paths import visibility_kernels as kernels
 from pin_metaik.mobile.paths.edge_grid import EdgeGrid
 from pin_metaik.mobile.world.border import Border, Indices
@@ -60,6 +61,7 @@ class VisibilityGraph:
         return csr_array((np.hypot(along[:, 0], along[:, 1]), (i, j)), shape=self.edges.shape)
 
 
+@checked
 class Visibility:
     """Who sees whom in a free space, whatever start and goal.
 
@@ -96,6 +98,7 @@ class Visibility:
         corners = self.border.corners
         return np.vstack((self.border.vertices[corners], start, goal)), np.append(corners, (-1, -1))
 
+    @checked
     def between(self, start: Point, goal: Point) -> VisibilityGraph:
         """The whole graph with a start and a goal, which must be free."""
         points, vertex = self.nodes(start, goal)

@@ -9,6 +9,8 @@ from functools import cached_property
 import numpy as np
 import shapely
 
+from pin_metaik.arguments import array, checked
+from pin_metaik.errors import InvalidGeometry
 from pin_metaik.mobile.errors import Blocked
 from pin_metaik.mobile.world.gaps import Contacts, opened
 from pin_metaik.mobile.world.growth import WITHIN, Join, grow
@@ -42,6 +44,7 @@ class FreeSpace:
     join: Join = "mitre"
 
     @staticmethod
+    @checked
     def of(scene: Scene, clearance: float = 0.0, join: Join = "mitre") -> FreeSpace:
         """The free space of a scene.
 
@@ -109,7 +112,8 @@ class FreeSpace:
 
     def holds(self, path: Array) -> bool:
         """Whether a path (n, 2) is free of collisions: the exact test, on the whole of it and not on samples."""
-        return bool(np.isfinite(path).all()) and not self.core.intersects(shapely.LineString(path))
+        line = _line(path)
+        return bool(np.isfinite(path).all()) and not self.core.intersects(line)
 
     def connects(self, start: Point, goal: Point) -> bool:
         """Whether there is a way between two places that are free."""
@@ -118,8 +122,10 @@ class FreeSpace:
 
     def distance(self, path: Array) -> float:
         """Distance of a path (n, 2) from the nearest obstacle as given, not grown; inf without obstacles."""
-        return float(shapely.LineString(path).distance(self.solid)) if self.scene.obstacles else float("inf")
+        line = _line(path)
+        return float(line.distance(self.solid)) if self.scene.obstacles else float("inf")
 
+    @checked
     def check(self, role: str, point: Point) -> None:
         """Make sure that the robot may be somewhere.
 
@@ -171,6 +177,18 @@ def _beyond(box: tuple[float, float, float, float]) -> shapely.Polygon:
     x_min, y_min, x_max, y_max = box
     room = _extent(box)
     return shapely.box(x_min - room, y_min - room, x_max + room, y_max + room)
+
+
+def _line(path: Array) -> shapely.LineString:
+    """A path (n, 2) that somebody gave, n >= 2.
+
+    Raises:
+        InvalidGeometry: It is none.
+    """
+    points = array("path", path, "n", 2, error=InvalidGeometry, finite=False)
+    if len(points) < 2:
+        raise InvalidGeometry(f"a path has at least two points, got {len(points)}")
+    return shapely.LineString(points)
 
 
 def _extent(box: tuple[float, float, float, float]) -> float:

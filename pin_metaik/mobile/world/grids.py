@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 from shapely import affinity
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.mobile.world.ros_maps import OCCUPIED, read_ros_map
 from pin_metaik.optimize.settings import one_of, whole
@@ -22,6 +23,7 @@ from pin_metaik.optimize.space import Array
 Unknown = Literal["blocked", "free"]
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class OccupancyGrid:
     """Square cells that are free or occupied. Between occupied cells that touch at a corner there is no way.
@@ -87,6 +89,7 @@ class OccupancyGrid:
         return affinity.affine_transform(region, (cos, -sin, sin, cos, x, y))
 
 
+@checked
 def grid_of(
     values: ArrayLike,
     *,
@@ -110,14 +113,12 @@ def grid_of(
         InvalidGeometry: Not a table of numbers, or cells without width.
         InvalidSetting: Unknown cells that are neither blocked nor free.
     """
-    try:
-        numbers = np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
-        raise InvalidGeometry("an occupancy grid is a table of numbers") from None
+    numbers = array("an occupancy grid", values, "rows", "columns", error=InvalidGeometry, finite=False)
     blocks = _blocks(unknown, unknown_blocks)
     return OccupancyGrid(np.where(numbers >= 0, numbers > threshold, blocks), resolution, origin)
 
 
+@checked
 def read_grid(
     path: str | Path,
     *,

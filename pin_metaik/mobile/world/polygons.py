@@ -12,6 +12,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.mobile.errors import LooksLikeDegrees
 from pin_metaik.mobile.files import read_json, read_text
@@ -25,6 +26,7 @@ FAR = 10  # extents from the origin: where a map of a few hundredths is likelier
 Found = tuple[BaseGeometry, str]
 
 
+@checked
 def read_obstacles(source: Any) -> tuple[BaseGeometry, ...]:
     """The polygons, lines and points of a source, checked one by one.
 

@@ -14,6 +14,7 @@ from typing import Any
 
 import shapely
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidGeometry, UnknownName
 from pin_metaik.mobile.files import only, read_json
 from pin_metaik.mobile.world.grids import Unknown, read_grid
@@ -65,6 +66,7 @@ class Scene:
         room = max(x_max - x_min, y_max - y_min, 1e-6)
         return x_min - room, y_min - room, x_max + room, y_max + room
 
+    @checked
     def between(self, start: Any, goal: Any) -> Scene:
         """The same world with another start and goal; None keeps the one there is."""
         return replace(self, start=self.start if start is None else start, goal=self.goal if goal is None else goal)
@@ -84,6 +86,7 @@ def scene_names() -> list[str]:
     return sorted(_shipped())
 
 
+@checked
 def load_scene(
     source: str | Path,
     start: Any = None,
@@ -148,7 +151,9 @@ def scene_of(mapping: Mapping[str, Any], name: str = "scene", start: Any = None,
     ends = {"start": start, "goal": goal}
     for role, given in ends.items():
         if given is None and mapping.get(role) is None:
-            raise InvalidGeometry(f"{name} does not say where the {role} is: give {role}=(x, y)")
+            raise InvalidGeometry(
+                f"{name} does not say where the {role} is: give {role}=(x, y), on the command line --{role} X Y"
+            )
         ends[role] = mapping[role] if given is None else given
     called = mapping.get("name", name)
     return Scene(ends["start"], ends["goal"], mapping["obstacles"], mapping.get("bounds"), str(called))
