@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copyreg
 import json
 from collections.abc import Iterable
 from difflib import get_close_matches
@@ -14,6 +15,10 @@ LISTED, NEAR = 100, 8  # longer lists than this are cut to the nearest names
 
 class MetaIKError(ValueError):
     """A call that makes no sense. A target that cannot be reached is not one: that is a status of the result."""
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle by message and values, whatever ``__init__`` takes: an error has to come back from a worker."""
+        return copyreg.__newobj__, (type(self), *self.args), self.__dict__  # type: ignore[attr-defined]
 
 
 class UnknownName(MetaIKError):

@@ -16,6 +16,7 @@ from pin_metaik.cli.many import split
 from pin_metaik.compare import CASES, Suite, write_report
 from pin_metaik.compare import compare as run
 from pin_metaik.compare import replay as again
+from pin_metaik.interrupts import kept
 
 
 class Backend(StrEnum):
@@ -47,14 +48,16 @@ def compare(
     """Compare methods on hard cases at equal budgets. Ctrl-C loses nothing: the same command goes on."""
     sys.path.insert(0, "")  # module:object may be in the folder one is in
     suite = Suite(split(robot), split(cases), split(methods), targets, seeds, budget, rng)
-    outcome = run(
-        suite,
-        out,
-        jobs=jobs,
-        backend=backend.value,
-        scheduler=scheduler,
-        command=join(["pin-metaik", *sys.argv[1:]]),
-        console=Console(stderr=True),
+    outcome = kept(
+        lambda: run(
+            suite,
+            out,
+            jobs=jobs,
+            backend=backend.value,
+            scheduler=scheduler,
+            command=join(["pin-metaik", *sys.argv[1:]]),
+            console=Console(stderr=True),
+        )
     )
     console = Console(highlight=False)
     console.print(str(outcome), style="yellow" if outcome.partial else None, markup=False, soft_wrap=True)

@@ -16,6 +16,7 @@ from pin_metaik.compare.papers import PAPERS, Options, Reproduction
 from pin_metaik.compare.report.show import show
 from pin_metaik.compare.report.write import need_figures, write
 from pin_metaik.errors import UnknownName
+from pin_metaik.interrupts import kept
 from pin_metaik.output import writable
 
 QUICK_RUNS = 3
@@ -46,7 +47,7 @@ def reproduce(
     options = Options(runs or (min(QUICK_RUNS, paper.runs) if quick else paper.runs), quick, long, rng)
     console = Console(width=None if sys.stdout.isatty() else WIDE)
     console.print(f"{paper.title}\n{paper.source}", markup=False, highlight=False)
-    again = papers.reproduce(paper, options, Console(stderr=True))
+    again = kept(lambda: papers.reproduce(paper, options, Console(stderr=True)))
     show(again.sections, console)
     console.print(f"\n{again}", style="yellow" if again.partial else None, markup=False, highlight=False)
     if out is not None:

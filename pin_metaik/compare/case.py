@@ -12,14 +12,19 @@ from numpy.typing import NDArray
 from pin_metaik.arguments import array, checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.compare.method import Answer
+from pin_metaik.errors import MetaIKError, UnsupportedJoint
 from pin_metaik.ik import IKProblem, IKStatus, Verdict
 from pin_metaik.kinematics import Chain
 from pin_metaik.robots import Robot
 
 Array = NDArray[np.float64]
 
-DRAWS = 10_000  # of a task, before a world is found to leave no room
+DRAWS = 1_000  # of a task, before a world is found to leave no room
 REACHED = "Within 1e-5 m and 1e-5 rad of the target and inside the limits, by Pinocchio, whatever the method says."
+
+
+class NoTask(MetaIKError):
+    """A case that an arm has no task of, such as singular poses of one that never loses a direction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +137,7 @@ class Case:
         """The task that a generator leads to.
 
         Raises:
-            RuntimeError: In so many draws nothing is free of collisions.
+            NoTask: The arm has none, or in so many draws nothing is free of collisions.
         """
         if world is None:
             return self.draw(chain, rng)
@@ -140,4 +145,14 @@ class Case:
             task = self.draw(chain, rng)
             if task.planted is None or not any(world.checker.collides(q) for q in chain.q(task.planted)):
                 return replace(task, world=world)
-        raise RuntimeError(f"none of {DRAWS:,} tasks is free of collisions")
+        raise NoTask(f"none of {DRAWS:,} tasks is free of collisions")
+
+    def lacks(self, robot: Robot, rng: np.random.Generator) -> str:
+        """Why a robot has no task of this case, as far as can be told without its world; empty if it has one."""
+        try:
+            self.draw(self.chain(robot, rng), rng)
+        except NoTask as none:
+            return str(none)
+        except UnsupportedJoint as error:
+            return str(error)
+        return ""

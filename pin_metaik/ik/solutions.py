@@ -42,7 +42,7 @@ class IKSolutions:
             is a sample, and False.
         evaluations: Forward kinematics computed.
         seconds: Time taken, s.
-        problem: What was asked.
+        problem: What was asked; out of a pickle, without its world, which has all meshes in it.
     """
 
     q: NDArray[np.float64]
@@ -50,6 +50,10 @@ class IKSolutions:
     evaluations: int
     seconds: float
     problem: IKProblem = field(repr=False)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Pickle without the world: kilobytes rather than megabytes."""
+        return {**self.__dict__, "problem": replace(self.problem, world=None)}
 
     @property
     def x(self) -> NDArray[np.float64]:

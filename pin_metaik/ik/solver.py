@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import islice
 from time import perf_counter
 
@@ -103,17 +104,14 @@ class IKSolver:
         ledger = Ledger(problem.whole if problem.loose else problem, self.budget, began, x0)
         if first is not None:
             ledger.add(first)
-        try:
-            if self.select != "first":
-                self._choose(problem, x0, base, rng, ledger)
-            if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
-                self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
-            if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
-                self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
-            if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None:
-                ledger.add(self._refiner.settle(ledger.problem, ledger.x, ledger.left()))
-        except KeyboardInterrupt:
-            ledger.interrupted = True
+        if self.select != "first":
+            self._choose(problem, x0, base, rng, ledger)
+        if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
+            self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
+        if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
+            self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
+        if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None:
+            ledger.add(self._refiner.settle(ledger.problem, ledger.x, ledger.left()))
         q = base.copy()
         chain.coordinates.write(ledger.x, q)
         verdict = problem.verdict(q)
@@ -168,25 +166,44 @@ class IKSolver:
     def _restart(
         self, problem: IKProblem, refiner: Refiner, x0: NDArray[np.float64], rng: Rng, ledger: Ledger, tried: int
     ) -> None:
-        """Refine from x0 (n,), then from random starts; the automatic solver also from an atlas of the chain.
+        """Refine from x0 (n,), then from random starts; ``tried`` says that the first batch of them has been.
 
-        The first batch, or all but the last, aims at the middle of the tolerances; the others at all that is accepted.
+        The middle of the tolerances is tried first. Where they are loose, all further batches aim at all that is
+        accepted; where they are not, a last one does.
         """
         share = 1.0 - RESERVE if self._seeder is None else RESTART_SHARE
-        if problem.loose:
-            rounds = [(problem, tried, 1 - tried, share), (problem.whole, 0, None, share)]
-        else:
-            last = 1 if self.starts is None else 0  # starts that were counted are not counted twice
-            rounds = [(problem, tried, None, share), (problem.whole, 0, last, share + RESERVE)]
-        for aim, skipped, batches, most in rounds:
+        batches = partial(start_batches, problem.chain, x0, rng, self.starts)
+        if not problem.loose:
+            self._refine(problem, refiner, batches(tried), bool(tried), ledger, share)
+            if self.starts is None and not ledger.met:  # starts that were counted are not counted twice
+                self._refine(problem.whole, refiner, islice(batches(), 1), False, ledger, share + RESERVE)
+            return
+        if not tried:
+            self._refine(problem, refiner, islice(batches(), 1), False, ledger, share)
+        if not ledger.met:
+            self._refine(problem.whole, refiner, batches(), False, ledger, share)
+
+    def _refine(
+        self,
+        problem: IKProblem,
+        refiner: Refiner,
+        batches: Iterator[NDArray[np.float64]],
+        begun: bool,
+        ledger: Ledger,
+        share: float,
+    ) -> None:
+        """Refine from one batch of starts after the other; the automatic solver begins with an atlas of the chain."""
+        refine = refiner.refine
+        if self._seeder is not None and isinstance(refiner, DLS) and not begun:
+            refine = refiner.refine_anywhere
+        if ledger.over(share) or (ledger.spent + begun and problem.gap > 0.0):
+            return
+        for starts in batches:
+            before = ledger.spent
+            ledger.add(refine(problem, starts, ledger.left(share)))
+            if ledger.over(share) or problem.gap > 0.0 or ledger.spent == before:
+                return
             refine = refiner.refine
-            if self._seeder is not None and isinstance(refiner, DLS) and not skipped:
-                refine = refiner.refine_anywhere
-            for starts in islice(start_batches(problem.chain, x0, rng, self.starts, skipped), batches):
-                if problem.gap > 0.0 or ledger.over(most):
-                    break
-                ledger.add(refine(aim, starts, ledger.left(most)))
-                refine = refiner.refine
 
     def _seed(
         self,

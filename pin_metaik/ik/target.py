@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from dataclasses import dataclass, field
-from functools import cache, cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -18,7 +18,10 @@ from pin_metaik.kinematics.pose import as_pose, as_position
 
 Tolerance: TypeAlias = float | tuple[float, float, float]
 
+Read: TypeAlias = tuple[Tolerance, tuple[float, float, float], float, bool]
+
 DEFAULT_TOLERANCE = 1e-5
+KEPT = 1024  # tolerances that have been read and are remembered
 WHOLE, EDGE = 0.99, 0.009  # of a tolerance: what is aimed at as a whole, and how near to that is near enough
 FREE = math.inf
 
@@ -53,6 +56,7 @@ class Target:
     orientation_weight: float = 1.0
     task: NDArray[np.float64] = field(init=False, repr=False)  # (26,) as the kernels take it
     counts: tuple[bool, ...] = field(init=False, repr=False)  # which of the six axes are not free
+    loose: bool = field(init=False, repr=False)  # whether one of those may be off by more than the default tolerance
 
     def __post_init__(self) -> None:
         """Check everything once, where it enters."""
@@ -60,10 +64,12 @@ class Target:
             raise InvalidTarget(f"frame is the name of one of the chain's frames, or None, got {shown(self.frame)}")
         placement, (a, b, c, x, d, e, f, y, g, h, i, z) = as_pose(self.pose)
         object.__setattr__(self, "pose", placement)
-        for name in ("position_tolerance", "orientation_tolerance"):
-            object.__setattr__(self, name, _as_tolerance(name, getattr(self, name)))
-        slack, near = _slack(self.position_tolerance)
-        lean, aligned = _slack(self.orientation_tolerance)
+        metres, slack, near, wide = _read("position_tolerance", self.position_tolerance)
+        radians, lean, aligned, broad = _read("orientation_tolerance", self.orientation_tolerance)
+        if metres is not self.position_tolerance:
+            object.__setattr__(self, "position_tolerance", metres)
+        if radians is not self.orientation_tolerance:
+            object.__setattr__(self, "orientation_tolerance", radians)
         if FREE == max(slack) == min(slack) == min(lean):
             raise InvalidTarget("this target frees every axis: nothing is left to reach")
         weight = _weight("position_weight", self.position_weight)
@@ -73,6 +79,7 @@ class Target:
         weights = (weight, weight, weight, turn, turn, turn)
         object.__setattr__(self, "task", np.array(world + slack + lean + weights + (near, aligned)))
         object.__setattr__(self, "counts", _finite(slack + lean))
+        object.__setattr__(self, "loose", wide or broad)
 
     @staticmethod
     def at(xyz: ArrayLike, *, frame: str | None = None, tolerance: Tolerance = DEFAULT_TOLERANCE) -> Target:
@@ -114,12 +121,6 @@ class Target:
             and isinstance(self.orientation_tolerance, float)
             and self.position_weight == self.orientation_weight == 1.0
         )
-
-    @property
-    def loose(self) -> bool:
-        """Whether it allows more than the default tolerance about or along an axis that is not free."""
-        allowed = (*_each(self.position_tolerance), *_each(self.orientation_tolerance))
-        return any(DEFAULT_TOLERANCE < t < FREE for t in allowed)
 
     @cached_property
     def whole_task(self) -> NDArray[np.float64]:
@@ -166,10 +167,18 @@ def _measure(error: list[float], tolerance: Tolerance) -> tuple[float, bool]:
     return size, size <= tolerance
 
 
+def _read(name: str, tolerance: object) -> Read:
+    """A tolerance that somebody gave: a number, or three in a tuple, list or array."""
+    if type(tolerance) is float or type(tolerance) is tuple:
+        try:
+            return _slack(name, tolerance)
+        except TypeError:  # a tuple of what has no hash
+            pass
+    return _slack(name, _as_tolerance(name, tolerance))
+
+
 def _as_tolerance(name: str, tolerance: object) -> Tolerance:
-    """A tolerance that somebody gave, as a float or a tuple of three."""
-    if type(tolerance) is float and tolerance > 0.0:  # what nearly everybody gives
-        return tolerance
+    """The same as a float or a tuple of three."""
     try:
         given = np.asarray(tolerance, dtype=float)
     except (TypeError, ValueError, OverflowError):
@@ -179,31 +188,32 @@ def _as_tolerance(name: str, tolerance: object) -> Tolerance:
     return float(given) if given.ndim == 0 else (float(given[0]), float(given[1]), float(given[2]))
 
 
-def _each(tolerance: Tolerance) -> tuple[float, ...]:
-    return tolerance if isinstance(tolerance, tuple) else (tolerance,)
-
-
 def _radius(tolerance: Tolerance) -> float:
     return math.hypot(*tolerance) if isinstance(tolerance, tuple) else tolerance
 
 
-@cache
+@lru_cache(KEPT)
 def _finite(slack: tuple[float, ...]) -> tuple[bool, ...]:
     return tuple(s < FREE for s in slack)
 
 
-@cache
-def _slack(tolerance: Tolerance) -> tuple[tuple[float, float, float], float]:
-    """A tolerance as the kernels take it, a little tighter than asked: slack per axis, and radius beyond the slack.
+@lru_cache(KEPT)
+def _slack(name: str, given: Tolerance) -> Read:
+    """A tolerance; as the kernels take it, a little tighter, slack per axis and radius beyond it; and if it is loose.
 
     One number is aimed at in the middle, where an answer is best; see ``_whole`` for when there is none.
     """
+    tolerance = _as_tolerance(name, given)
+    each = tolerance if isinstance(tolerance, tuple) else (tolerance,)
+    loose = any(DEFAULT_TOLERANCE < t < FREE for t in each)
     if isinstance(tolerance, tuple):
-        return (0.9 * tolerance[0], 0.9 * tolerance[1], 0.9 * tolerance[2]), 0.099 * min(tolerance)
-    return ((FREE,) * 3, FREE) if tolerance == FREE else ((0.0,) * 3, 0.999 * tolerance)
+        return tolerance, (0.9 * tolerance[0], 0.9 * tolerance[1], 0.9 * tolerance[2]), 0.099 * min(tolerance), loose
+    if tolerance == FREE:
+        return tolerance, (FREE, FREE, FREE), FREE, loose
+    return tolerance, (0.0, 0.0, 0.0), 0.999 * tolerance, loose
 
 
-@cache
+@lru_cache(KEPT)
 def _whole(tolerance: Tolerance) -> tuple[tuple[float, float, float], float]:
     """The same of all that is accepted: a box for three numbers, a ball (minus its radius, thrice) for one."""
     if isinstance(tolerance, tuple):

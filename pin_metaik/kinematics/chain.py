@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from functools import cached_property
+from functools import cached_property, lru_cache
 from threading import Lock
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -34,9 +34,11 @@ from pin_metaik.kinematics.reach import Reach, reach_of
 from pin_metaik.optimize import Box
 from pin_metaik.optimize.settings import few
 from pin_metaik.randomness import DEFAULT_SEED, as_generator
+from pin_metaik.robots.pickling import reduce_model
 
 LANE = 256  # random starts of the fast lane
 REMEMBERED = 16  # sets of samples kept, and chains whose held joints are elsewhere
+REMADE = 16  # chains kept that came out of pickles
 
 
 class Lane(NamedTuple):
@@ -192,8 +194,19 @@ class Chain:
         return self._own.data
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Pickle by what the chain was made from."""
-        return _remade, (*self._made_from, self.reference)
+        """Pickle by what the chain was made from, kilobytes; equal pickles are one chain where they are read.
+
+        Raises:
+            InvalidModel: If the model cannot be pickled; see ``pin_metaik.robots.pickling``.
+        """
+        return _remade, self._recipe
+
+    @cached_property
+    def _recipe(self) -> tuple[object, ...]:
+        """What ``_remade`` takes: plain values, to be compared."""
+        model, _, locked, limits = self._made_from
+        ranges = tuple((name, float(lower), float(upper)) for name, (lower, upper) in limits.items())
+        return *reduce_model(model), self.frames, locked, ranges, tuple(self.reference.tolist())
 
     @property
     def n(self) -> int:
@@ -352,14 +365,18 @@ class Chain:
         return f"Chain({self.model.name}: {', '.join(self.frames)}; {self.n} joints: {', '.join(self.names)})"
 
 
+@lru_cache(maxsize=REMADE)
 def _remade(
-    model: pin.Model,
-    frame: str | Iterable[str],
+    make: Callable[..., pin.Model],
+    parts: tuple[Any, ...],
+    frames: tuple[str, ...],
     locked: tuple[str, ...],
-    limits: dict[str, tuple[float, float]],
-    reference: ArrayLike | None,
+    limits: tuple[tuple[str, float, float], ...],
+    reference: tuple[float, ...],
 ) -> Chain:
-    return Chain(model, frame, locked=locked, limits=limits, reference=reference)
+    """A chain from its pickle. The last few are kept: a thousand results, or calls of a worker, share one."""
+    ranges = {name: (lower, upper) for name, lower, upper in limits}
+    return Chain(make(*parts), frames, locked=locked, limits=ranges, reference=reference)
 
 
 def _kernels() -> ModuleType:

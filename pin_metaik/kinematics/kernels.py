@@ -164,29 +164,26 @@ def residual(task: Floats, error: Floats, r: Floats) -> tuple[float, float]:
     return position, orientation
 
 
-@inline
-def beyond_ball(task: Floats, error: Floats, part: int, r: Floats) -> float:
-    """Weighted position (part 0) or orientation (part 3) beyond its ball, into r (6,); returns its size, squared."""
+@shared
+def beyond_ball(task: Floats, error: Floats, part: int, r: Floats, J: Floats) -> float:
+    """Weighted position (part 0) or orientation (part 3) beyond its ball, into r (6,); returns its size, squared.
+
+    J (n, 6), the Jacobian of the error, becomes that of what is beyond: along the ball it shrinks by as much.
+    """
     x, y, z = error[part], error[part + 1], error[part + 2]
-    size = math.sqrt(x * x + y * y + z * z)
-    outside = float(max(size + task[12 + part], 0.0))
+    square = x * x + y * y + z * z
+    size = math.sqrt(square)
+    outside = max(size + task[12 + part], 0.0)
     scale = outside / size if outside > 0.0 else 0.0
     for j in range(part, part + 3):
         r[j] = scale * task[18 + j] * error[j]
-    return outside * outside
-
-
-@inline
-def along_ball(task: Floats, error: Floats, part: int, J: Floats) -> None:
-    """Turn the Jacobian J (n, 6) of an error into that of the error beyond its ball: the way along it shrinks."""
-    x, y, z = error[part], error[part + 1], error[part + 2]
-    size = math.sqrt(x * x + y * y + z * z)
-    inside = min(-task[12 + part] / size, 1.0) if size > 0.0 else 1.0
-    across = 1.0 - inside
     for c in range(J.shape[0]):
-        outward = (x * J[c, part] + y * J[c, part + 1] + z * J[c, part + 2]) * inside / (size * size)
+        outward = 0.0
+        if outside > 0.0:
+            outward = (1.0 - scale) * (x * J[c, part] + y * J[c, part + 1] + z * J[c, part + 2]) / square
         for j in range(part, part + 3):
-            J[c, j] = across * J[c, j] + outward * error[j] if across > 0.0 else 0.0
+            J[c, j] = scale * J[c, j] + outward * error[j]
+    return float(outside * outside)
 
 
 @shared
@@ -255,6 +252,7 @@ def costs(joints: Floats, wiring: Ints, ends: Ints, tips: Floats, tasks: Floats,
     """Cost (k,) of a population X (k, n): weighted distance in m plus weighted angle in rad, summed over the tips."""
     S = joints.shape[0]
     axes, origins, pose, error, r = np.empty((S, 3)), np.empty((S, 3)), np.empty(12), np.empty(6), np.empty(6)
+    no_jacobian = np.empty((0, 6))
     for k in range(X.shape[0]):
         total = 0.0
         for t in range(tips.shape[0]):
@@ -262,8 +260,9 @@ def costs(joints: Floats, wiring: Ints, ends: Ints, tips: Floats, tasks: Floats,
             forward(joints, wiring, ends[t], ends[t + 1], tips[t], task[:12], X[k], axes, origins, pose)
             pose_error(pose, error)
             residual(task, error, r)
-            for part in range(0, 6, 3):
-                if task[12 + part] < 0.0:
-                    beyond_ball(task, error, part, r)
+            if task[12] < 0.0:
+                beyond_ball(task, error, 0, r, no_jacobian)
+            if task[15] < 0.0:
+                beyond_ball(task, error, 3, r, no_jacobian)
             total += math.sqrt(r[0] ** 2 + r[1] ** 2 + r[2] ** 2) + math.sqrt(r[3] ** 2 + r[4] ** 2 + r[5] ** 2)
         out[k] = total

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.interrupts import Interrupted
 from pin_metaik.learn.arrays import Array, as_table
 from pin_metaik.randomness import as_generator
 
@@ -64,6 +65,7 @@ def fuzzy_c_means(
 
     Raises:
         InvalidSetting: Points that are no table of finite numbers, or settings out of range.
+        Interrupted: Ctrl-C; its ``result`` is the clusters so far.
     """
     Z = as_table("the points", Z)
     if not 1 <= clusters <= len(Z):
@@ -78,7 +80,7 @@ def fuzzy_c_means(
         raise InvalidSetting(f"the start has shape {centres.shape}: expected ({clusters}, {Z.shape[1]})")
     rest = tolerance * float(np.ptp(Z, axis=0).max())
     objective: list[float] = []
-    converged = interrupted = False
+    converged = False
     try:
         while not converged and len(objective) < iterations:
             moved, J = _step(Z, centres, m)
@@ -88,8 +90,8 @@ def fuzzy_c_means(
             if callback is not None:
                 callback(len(objective), J)
     except KeyboardInterrupt:
-        interrupted = True
-    return Clusters(centres, np.array(objective), converged, interrupted)
+        raise Interrupted(Clusters(centres, np.array(objective), converged, interrupted=True)) from None
+    return Clusters(centres, np.array(objective), converged)
 
 
 @checked

@@ -5,13 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
 from pin_metaik.mobile.motion.trajectory import Samples
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
-from pin_metaik.robots import Robot
+from pin_metaik.robots import Description, Robot
 
 HEIGHT = 0.8  # m, the Nomad 200's; where it matters to somebody it is an argument
 SMALLEST = 0.05  # m; a robot without a radius is drawn with this one
@@ -51,8 +50,8 @@ def mobile_robot(vehicle: SynchroDrive, height: float = HEIGHT) -> Robot:
     radius = max(vehicle.radius, SMALLEST)
     numbers = {"middle": height / 2, "height": height, "radius": radius, "nose": radius / 2, "width": radius / 4}
     urdf = URDF.format(name=vehicle.name, **{key: f"{value:.6g}" for key, value in numbers.items()})
-    model = pin.buildModelFromXML(urdf, pin.JointModelPlanar())
-    return Robot(vehicle.name, model, "base", urdf, Path(__file__))
+    description = Description(urdf, Path(__file__), base="planar")
+    return Robot(vehicle.name, description.model(), "base", description)
 
 
 @checked

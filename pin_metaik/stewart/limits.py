@@ -104,6 +104,11 @@ class LegLimits:
         return self.longest - self.shortest
 
     @property
+    def beyond_lengths(self) -> bool:
+        """Whether anything but the lengths of the legs is limited."""
+        return min(self.base_angle, self.platform_angle) < pi or self.distance > 0.0
+
+    @property
     def array(self) -> Array:
         """The limits (5,) as the compiled loops take them."""
         angles = [cos(angle) if angle < pi else -1.0 for angle in (self.base_angle, self.platform_angle)]

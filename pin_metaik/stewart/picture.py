@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 FORMATS = (".png", ".svg", ".pdf")
 STEEL, PLATE, ROD = "#4a4f57", "#e07b1a", "#2f6fb0"
 TAG = {"boxstyle": "circle,pad=0.15", "facecolor": "white", "edgecolor": STEEL, "linewidth": 0.6}
+FLATTEST = 0.2  # of the longest side: what is drawn flatter than that has no room for its numbers
 VIEW = {"elev": 18.0, "azim": -60.0}
 
 
@@ -179,8 +181,16 @@ def _mechanism(axes: Any, mechanism: Mechanism, T: Array, scale: float) -> None:
         axes.scatter(*(scale * joints).T, color=colour, s=26, depthshade=False)
         for k, joint in enumerate(joints, start=1):
             outward = joint - joints.mean(axis=0)
-            place = joint + aside * outward / np.linalg.norm(outward) + [0.0, 0.0, 0.6 * aside if name == "M" else 0.0]
-            axes.text(*(scale * place), f"{name}{k}", fontsize=9, color=colour, ha="center", fontweight="bold")
+            away = aside * outward / max(float(np.linalg.norm(outward)), 1e-12)
+            place = joint + away + [0.0, 0.0, 0.6 * aside if name == "M" else -0.6 * aside]
+            label = axes.text(*(scale * place), f"{name}{k}", fontsize=9, color=colour, fontweight="bold", zorder=30)
+            label.set(ha="center", va="center", path_effects=_halo())
+
+
+def _halo() -> list[Any]:
+    """A white edge round letters, so that what is behind them does not hide them."""
+    effects = import_module("matplotlib.patheffects")
+    return [effects.withStroke(linewidth=2.5, foreground="white")]
 
 
 def _plate(axes: Any, corners: Array, colour: str) -> None:
@@ -188,8 +198,10 @@ def _plate(axes: Any, corners: Array, colour: str) -> None:
 
 
 def _dress(axes: Any, labels: tuple[str, ...]) -> None:
-    for name, label in zip("xyz", labels, strict=True):
+    extents = np.array([np.ptp(getattr(axes, f"get_{name}lim")()) for name in "xyz"])
+    for name, label, extent in zip("xyz", labels, extents, strict=True):
         getattr(axes, f"set_{name}label")(label, fontsize=9)
+        axes.locator_params(axis=name, nbins=5 if extent > 0.4 * extents.max() else 3)
     axes.tick_params(labelsize=8)
-    axes.set_box_aspect([np.ptp(getattr(axes, f"get_{name}lim")()) for name in "xyz"], zoom=0.92)
+    axes.set_box_aspect(np.maximum(extents, FLATTEST * extents.max()), zoom=0.9)
     axes.view_init(**VIEW)

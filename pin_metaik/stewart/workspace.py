@@ -14,7 +14,7 @@ from pin_metaik.errors import InvalidGeometry, InvalidSetting
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.cells import Cells
 from pin_metaik.stewart.conditioning import Dexterity
-from pin_metaik.stewart.geometry import Geometry
+from pin_metaik.stewart.geometry import MOST_LEGS, Geometry
 from pin_metaik.stewart.limits import LegLimits, PoseState
 
 
@@ -23,14 +23,22 @@ class EmptyWorkspace(InvalidGeometry):
 
     Attributes:
         reasons: How many poses each limit forbids.
+        room: A box (2, 3) in m that holds whatever the limits may allow within the ranges of the grid, between its
+            positions; None: they allow nothing there, which is proved.
     """
 
-    def __init__(self, reasons: dict[PoseState, int]) -> None:
-        self.reasons = reasons
+    def __init__(self, reasons: dict[PoseState, int], room: Array | None = None) -> None:
+        self.reasons, self.room = reasons, room
         total = sum(reasons.values())
-        why = ", ".join(f"{count} are {state.words}" for state, count in reasons.items())
-        hint = "move the grid or widen the limits"
-        super().__init__(f"the workspace is empty: of {total} poses of the grid {why}; {hint}")
+        why = f"of {total} poses of the grid {', '.join(f'{n} are {state.words}' for state, n in reasons.items())}"
+        if room is None:
+            super().__init__(f"the workspace is empty: {why}; move the grid or widen the limits")
+        else:
+            ends = ", ".join(f"{name} {low:.6g} to {high:.6g}" for name, low, high in zip("xyz", *room, strict=True))
+            super().__init__(f"no pose of the grid is within the limits: {why}; look with a finer grid at {ends} m")
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (self.reasons, self.room)
 
 
 class Verdict(StrEnum):
@@ -38,6 +46,8 @@ class Verdict(StrEnum):
 
     REGULAR = "REGULAR"
     """No pose reached is singular, and det J has one sign."""
+    UNDERCONSTRAINED = "UNDERCONSTRAINED"
+    """Fewer than six legs: between universal and spherical joints they leave the platform freedoms everywhere."""
     CROSSES_SINGULARITY = "CROSSES_SINGULARITY"
     """Some poses reached are singular, or det J changes sign between them."""
     SINGULAR = "SINGULAR"
@@ -83,6 +93,11 @@ class Workspace:
         regular: NDArray[np.bool_] = self.reached & (self.states != PoseState.SINGULAR)
         return regular
 
+    @cached_property
+    def cells_reached(self) -> int:
+        """How many cells carry the figures: those reached in at least one of the orientations."""
+        return int(self.reached.any(axis=-1).sum())
+
     @property
     def counts(self) -> dict[PoseState, int]:
         """How many poses have each state; states that do not occur are left out."""
@@ -96,17 +111,24 @@ class Workspace:
         sides = (PoseState.POSITIVE in counts) + (PoseState.NEGATIVE in counts)
         if sides == 0:
             return Verdict.SINGULAR
+        if self.geometry.n < MOST_LEGS:
+            return Verdict.UNDERCONSTRAINED
         return Verdict.CROSSES_SINGULARITY if sides == 2 or PoseState.SINGULAR in counts else Verdict.REGULAR
 
     @property
     def volume(self) -> float:
         """Volume of the positions reached in at least one of the orientations, m^3."""
-        return float(self.reached.any(axis=-1).sum() * self.cells.volume)
+        return self.cells_reached * self.cells.volume
 
     @property
     def volume_of_all(self) -> float:
         """Volume of the positions reached in every one of the orientations, m^3."""
         return float(self.reached.all(axis=-1).sum() * self.cells.volume)
+
+    @property
+    def at_one_position(self) -> bool:
+        """Whether this is the orientations reached at a single position, which have no volume."""
+        return self.states.shape[:3] == (1, 1, 1) and self.states.shape[3] > 1
 
     @property
     def orientations(self) -> Array:
@@ -172,7 +194,8 @@ class Workspace:
     def __str__(self) -> str:
         gdi = "no GDI" if self.gdi is None else f"GDI {self.gdi:.4f}"
         share = f"{self.reached.sum()} of {self.reached.size} poses reached"
-        return f"{self.verdict}: {gdi}, {1e6 * self.volume:.4g} cm3, {share}"
+        size = "at one position" if self.at_one_position else f"{1e6 * self.volume:.4g} cm3"
+        return f"{self.verdict}: {gdi}, {size}, {share}"
 
 
 def _indices(index: NDArray[np.int64], shape: tuple[int, ...], columns: int = 3) -> None:

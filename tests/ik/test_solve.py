@@ -203,17 +203,6 @@ def test_time_ends_a_search_and_is_called_stopped() -> None:
         assert result.seconds < 1.0
 
 
-def test_ctrl_c_ends_a_search_with_the_best_so_far() -> None:
-    class Interrupted:
-        def refine(self, problem: mik.IKProblem, starts: np.ndarray, evaluations: int) -> mik.Refinement:
-            raise KeyboardInterrupt
-
-    chain = chain_of("panda")
-    result = mik.solve_ik(chain, [0.4, 0.1, 0.5], solver=mik.IKSolver(None, Interrupted()))
-    assert result.status is mik.IKStatus.STOPPED
-    assert chain.limits.contains(result.x)
-
-
 def test_the_trace_is_there_when_asked_for() -> None:
     chain = chain_of("ur5")
     goal = [0.3, 0.3, 0.4]

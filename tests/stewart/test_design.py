@@ -169,12 +169,14 @@ def test_the_least_workspace_keeps_dexterous_specks_out():
     assert found.score.workspace >= 0.08
 
 
-def test_ctrl_c_returns_the_best_design_so_far():
+def test_ctrl_c_goes_through_with_the_best_design_so_far():
     def press(done, total):
         if done >= 240:
             raise KeyboardInterrupt
 
-    found = design(stroke(50), watch=press)
+    with pytest.raises(KeyboardInterrupt) as stop:
+        design(stroke(50), watch=press)
+    found = stop.value.result
     assert found.interrupted
     assert found.success
     assert found.search.evaluations == 240

@@ -17,7 +17,7 @@ from pin_metaik.ik import IKProblem, IKResult, IKSolver, IKStatus, Refiner, solv
 from pin_metaik.ik.ledger import Ledger
 from pin_metaik.ik.refine import make_refiner
 from pin_metaik.ik.solver import ELITE
-from pin_metaik.optimize import Budget, Metaheuristic, Status, make, minimize
+from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
 from pin_metaik.optimize.settings import whole
 
 
@@ -105,8 +105,6 @@ class Rounds:
         while not ledger.over() and problem.gap == 0.0:
             allowed = Budget(evaluations=min(self.round, ledger.left()), target=problem.good_enough)
             found = minimize(problem.costs, problem.box, self.seeder, allowed, rng, seeds=seeds, keep=ELITE)
-            if found.status is Status.INTERRUPTED:
-                raise KeyboardInterrupt
             ledger.add_search(found)
             if not ledger.over():
                 ledger.add(refiner.refine(problem, found.elite, ledger.left()))
@@ -116,11 +114,5 @@ class Rounds:
 
 
 def answer(result: IKResult) -> Answer:
-    """A result as an answer.
-
-    Raises:
-        KeyboardInterrupt: If Ctrl-C ended the search, which keeps it for itself.
-    """
-    if result.status is IKStatus.STOPPED:
-        raise KeyboardInterrupt
+    """A result as an answer."""
     return Answer(result.x, result.success, result.evaluations, str(result.status), result.trace)

@@ -24,7 +24,7 @@ def fastest_trajectory(
     *,
     paths: int = 3,
     margins: Iterable[float] = MARGINS,
-    join: Join = "mitre",
+    join: Join | None = None,
 ) -> TrajectoryPlan:
     """The quickest trajectory over the shortest paths of the best homotopy classes, for each of several margins.
 
@@ -35,7 +35,7 @@ def fastest_trajectory(
         vehicle: The robot.
         paths: How many homotopy classes to try, for each margin.
         margins: Distances, in m, that paths keep on top of the robot's radius. Those that leave no way are skipped.
-        join: How grown obstacles end at their corners.
+        join: How grown obstacles end at their corners; see ``PathProblem.of``.
 
     Raises:
         Blocked: The robot cannot be at the start or the goal with any of the margins.

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.interrupts import wrapped
 from pin_metaik.learn import OutsideTraining, Regressor, Trainer, fit
 from pin_metaik.learn.arrays import Array
 from pin_metaik.mobile.motion.turn import lead_time
@@ -238,7 +239,8 @@ def learn_turn(
     v, theta = points.T
     use = DESIGNS[design]
     alpha = v * lead_time(theta, vehicle)
-    regressor = fit(use.inputs(v, theta), use.output(alpha), hidden, trainer, iterations, rng, callback)
-    return LearnedTurn(
-        vehicle, design, regressor, (float(theta.min()), float(theta.max())), (float(v.min()), float(v.max()))
+    angles, speeds = (float(theta.min()), float(theta.max())), (float(v.min()), float(v.max()))
+    return wrapped(
+        lambda: fit(use.inputs(v, theta), use.output(alpha), hidden, trainer, iterations, rng, callback),
+        lambda regressor: LearnedTurn(vehicle, design, regressor, angles, speeds),
     )

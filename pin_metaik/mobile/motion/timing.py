@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidGeometry, InvalidSetting
-from pin_metaik.mobile.motion.learned import LearnedTurn, TurnReport, learn_turn
+from pin_metaik.interrupts import wrapped
+from pin_metaik.mobile.motion.learned import LearnedCorners, LearnedTurn, learn_turn
 from pin_metaik.mobile.motion.result import Method, TrajectoryPlan
 from pin_metaik.mobile.motion.route import Route
 from pin_metaik.mobile.motion.speeds import Speeds, optimal_speeds, searched_speeds
@@ -64,6 +65,7 @@ def plan_trajectory(
     Raises:
         InvalidSetting: No such method, or a radius below zero.
         InvalidGeometry: A path that is none, or that turns back by 180 degrees.
+        Interrupted: Ctrl-C, after the first generation of a search; its ``result`` is the plan with the best speeds.
     """
     one_of("method", method, Method)
     if model is not None and model.vehicle != vehicle:
@@ -76,21 +78,25 @@ def plan_trajectory(
     if not isinstance(path, Path):
         path = Path(array("path", path, "n", 2, error=InvalidGeometry))
     route = Route.along(path, vehicle, obstacles, keep)
-    lengths, report, speeds = _solve(route, method, algorithm, budget, rng, model, callback)
-    took = perf_counter() - began
-    return TrajectoryPlan(
-        trajectory=drive(route, speeds.v, lengths),
-        route=route,
-        v=speeds.v,
-        method=method,
-        obstacles=tuple(obstacles),
-        radius=keep,
-        evaluations=speeds.evaluations,
-        seconds=took,
-        seed=int(rng) if isinstance(rng, (int, np.integer)) else None,
-        interrupted=speeds.interrupted,
-        learned=report,
-    )
+    turns = model.at(np.abs(route.turns)) if method == "ann" and model is not None else None
+
+    def planned(speeds: Speeds) -> TrajectoryPlan:
+        took = perf_counter() - began
+        return TrajectoryPlan(
+            trajectory=drive(route, speeds.v, None if turns is None else turns.tangents(speeds.v[None])[0]),
+            route=route,
+            v=speeds.v,
+            method=method,
+            obstacles=tuple(obstacles),
+            radius=keep,
+            evaluations=speeds.evaluations,
+            seconds=took,
+            seed=int(rng) if isinstance(rng, (int, np.integer)) else None,
+            interrupted=speeds.interrupted,
+            learned=None if turns is None else turns.report(speeds.v),
+        )
+
+    return wrapped(lambda: _speeds(route, method, algorithm, budget, rng, turns, callback), planned)
 
 
 def drive(route: Route, v: Array, tangents: Array | None = None) -> Trajectory:
@@ -116,24 +122,18 @@ def drive(route: Route, v: Array, tangents: Array | None = None) -> Trajectory:
     return Trajectory(phases, (*route.path.points[0].tolist(), float(np.arctan2(dy, dx))))
 
 
-def _solve(
+def _speeds(
     route: Route,
     method: Method,
     algorithm: str | Metaheuristic,
     budget: Budget,
     rng: int | np.random.Generator | None,
-    model: LearnedTurn | None,
+    turns: LearnedCorners | None,
     callback: Callable[[AskTell], bool | None] | None,
-) -> tuple[Array | None, TurnReport | None, Speeds]:
-    """Tangent lengths if they are not the true ones, the network's report, and the speeds."""
-    match method:
-        case "dp":
-            return None, None, optimal_speeds(route)
-        case "de":
-            return None, None, searched_speeds(route, algorithm, budget, rng, callback=callback)
-        case "ann":
-            assert model is not None
-            turns = model.at(np.abs(route.turns))
-            speeds = searched_speeds(route, algorithm, budget, rng, turns.tangents, callback, turns.slowest)
-            lengths = turns.tangents(speeds.v[None])[0]
-            return lengths, turns.report(speeds.v), speeds
+) -> Speeds:
+    """The speeds by a method; with a network's ``turns``, those that it takes to be the quickest."""
+    if method == "dp":
+        return optimal_speeds(route)
+    if turns is None:
+        return searched_speeds(route, algorithm, budget, rng, callback=callback)
+    return searched_speeds(route, algorithm, budget, rng, turns.tangents, callback, turns.slowest)

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from pin_metaik.arguments import checked, shown
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.mobile.paths import fitness_kernels as kernels
+from pin_metaik.mobile.world.border import rings
 from pin_metaik.mobile.world.freespace import FreeSpace
-from pin_metaik.mobile.world.growth import grow, rings
+from pin_metaik.mobile.world.growth import grow
 from pin_metaik.mobile.world.scene import Point
 from pin_metaik.optimize.settings import one_of, within
 from pin_metaik.optimize.space import Array
@@ -177,7 +178,8 @@ class Hulls:
     @cached_property
     def hulls(self) -> list[shapely.Polygon]:
         """The convex obstacle areas."""
-        grown = (shapely.union_all(grow((polygon,), self.space.clearance)) for polygon in self.space.scene.obstacles)
+        space, obstacles = self.space, self.space.scene.obstacles
+        grown = (shapely.union_all(grow((each,), max(space.clearance, space.hair), space.join)) for each in obstacles)
         return [region.convex_hull for region in grown]
 
     @cached_property

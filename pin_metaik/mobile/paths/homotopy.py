@@ -19,7 +19,8 @@ from scipy.sparse.csgraph import dijkstra
 from pin_metaik.arguments import checked
 from pin_metaik.mobile.paths.exact import shortest_path
 from pin_metaik.mobile.paths.path import Path
-from pin_metaik.mobile.paths.visibility import Indices, Visibility, VisibilityGraph
+from pin_metaik.mobile.paths.visibility import Visibility, VisibilityGraph
+from pin_metaik.mobile.world.border import Indices
 from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.scene import Point
 from pin_metaik.optimize.settings import whole

@@ -34,14 +34,15 @@ class PathProblem:
 
     @staticmethod
     @checked
-    def of(scene: Scene, radius: float = 0.0, margin: float = 0.0, join: Join = "mitre") -> PathProblem:
+    def of(scene: Scene, radius: float = 0.0, margin: float = 0.0, join: Join | None = None) -> PathProblem:
         """A problem, checked.
 
         Args:
             scene: The world, start and goal.
             radius: Of the robot, in the scene's unit.
             margin: Distance to keep on top of that.
-            join: How grown obstacles end at their corners: ``mitre`` or ``round``.
+            join: How grown obstacles end at their corners: ``mitre`` or ``round``; default: ``mitre``, which has fewer
+                corners, and ``round`` if that leaves no way.
 
         Raises:
             Blocked: The robot cannot be at the start or the goal.
@@ -49,7 +50,10 @@ class PathProblem:
         """
         within("radius", radius, 0)
         within("margin", margin, 0)
-        space = FreeSpace.of(scene, radius + margin, join)
+        clearance = radius + margin
+        space = FreeSpace.of(scene, clearance, join or "mitre")
+        if join is None and clearance and not space.connects(scene.start, scene.goal):
+            space = FreeSpace.of(scene, clearance, "round")
         space.check("start", scene.start)
         space.check("goal", scene.goal)
         return PathProblem(scene, space)
