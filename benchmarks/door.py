@@ -171,6 +171,19 @@ def doors() -> dict[str, Door]:
     return found
 
 
+def parameters(door: Door) -> set[str]:
+    """Names of all that a door takes."""
+    function = door.function
+    if function is None:
+        place, kind, attribute = door.name.split(".")
+        function = getattr(getattr(MODULES[place], kind), attribute)
+    several = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+    taken = {
+        name for name, parameter in inspect.signature(function).parameters.items() if parameter.kind not in several
+    }
+    return taken - {"self"}
+
+
 def _of(name: str, thing: Any) -> Iterator[Door]:
     """A function; or of a class its constructor and methods. What is made for a user to read needs no constructor."""
     if not inspect.isclass(thing):

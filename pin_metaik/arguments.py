@@ -236,9 +236,12 @@ def _nothing(value: Any) -> None:
 
 
 def _whole(value: Any) -> int:
-    if isinstance(value, (bool, np.bool_)) or not hasattr(value, "__index__") or np.ndim(value):
+    if isinstance(value, (bool, np.bool_)):
         raise _Unlike
-    return operator.index(value)
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise _Unlike from None
 
 
 def _number(value: Any) -> float:
@@ -370,8 +373,10 @@ def _array(kind: Any) -> Read:
 
 
 def _instance(kind: Any) -> Read:
+    collects = kind.__module__ == "collections.abc"  # a text is one thing, though it holds letters
+
     def read(value: Any) -> Any:
-        if not isinstance(value, kind):
+        if not isinstance(value, kind) or (collects and isinstance(value, (str, bytes))):
             raise _Unlike
         return value
 

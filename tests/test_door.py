@@ -32,11 +32,13 @@ def sweep(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     return importlib.import_module("door")
 
 
-def test_every_public_callable_has_a_good_call(sweep: ModuleType) -> None:
+def test_every_public_callable_has_a_good_call_with_all_its_arguments(sweep: ModuleType) -> None:
     doors = sweep.doors()
     assert len(doors) > 250
     assert set(doors) == set(sweep.CALLS)
     with sweep.elsewhere():
+        for name, door in doors.items():
+            assert sweep.parameters(door) <= set(sweep.CALLS[name]()), name
         sweep.warm_up()
 
 
