@@ -6,6 +6,7 @@ import json
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,6 +18,7 @@ from pin_metaik.cli.codes import INTERRUPTED
 from pin_metaik.cli.versions import versions
 from pin_metaik.compare.report.write import need_figures
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.interrupts import kept
 from pin_metaik.optimize import ALGORITHMS, AskTell, Budget
 from pin_metaik.output import writable
 
@@ -86,15 +88,17 @@ def plan(
     problem = mobile.PathProblem.of(world, keep, room, join)  # type: ignore[arg-type]  # it checks the join itself
     _warm_up()
     with _progress("path") as tick:
-        path = mobile.plan_path(
-            problem,
-            method,
-            fitness=fitness,
-            via=via,
-            budget=Budget(evaluations=evaluations),
-            rng=rng,
-            seeded=seeded,
-            callback=tick,
+        path = kept(
+            lambda: mobile.plan_path(
+                problem,
+                method,
+                fitness=fitness,
+                via=via,
+                budget=Budget(evaluations=evaluations),
+                rng=rng,
+                seeded=seeded,
+                callback=tick,
+            )
         )
     plans = mobile.plan_alternatives(problem, paths) if paths > 1 else [path]
     motions = list(_motions(plans, robot, keep, trajectory, rng)) if trajectory and path.success else []
@@ -149,7 +153,8 @@ def _motions(
     for plan in plans:
         with _progress("trajectory") as tick, warnings.catch_warnings():
             warnings.simplefilter("ignore", OutsideTraining)  # the plan's notes say it
-            yield mobile.plan_trajectory(
+            plan_one = partial(
+                mobile.plan_trajectory,
                 plan.path,
                 robot,
                 plan.problem.scene.obstacles,
@@ -159,6 +164,7 @@ def _motions(
                 model=model,
                 callback=tick,
             )
+            yield kept(plan_one)
 
 
 @contextmanager
