@@ -136,6 +136,11 @@ def array(
     Raises:
         MetaIKError: Of the class ``error``: not numbers, not finite, or of another shape.
     """
+    if type(value) is np.ndarray and value.dtype.char == "d" and value.flags.carray:  # what loops hand on
+        have = value.shape
+        some = type(shape[0]) is str and have[1 - len(shape) :] == shape[1:] and (shape[0] == "..." or value.ndim == 2)
+        if (have == shape or some) and (not finite or math.isfinite(np.add.reduce(value, axis=None))):
+            return value
     try:
         numbers = np.asarray(value, dtype=float, order="C")
     except (TypeError, ValueError, OverflowError):
@@ -356,8 +361,10 @@ def _mapping(key: Read, entry: Read) -> Read:
 
 
 def _array(kind: Any) -> Read:
+    char = np.dtype(kind).char
+
     def read(value: Any) -> Any:
-        if isinstance(value, np.ndarray) and value.dtype == kind:
+        if isinstance(value, np.ndarray) and value.dtype.char == char:
             return value
         try:
             numbers = np.asarray(value)
