@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-VERSION = b"3"  # of what is kept: a new one when the way to work it out changes
+VERSION = b"4"  # of what is kept: a new one when the way to work it out changes
 Arrays = dict[str, NDArray[np.float64]]
 
 
