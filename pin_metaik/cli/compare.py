@@ -11,13 +11,12 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from pin_metaik.cli.codes import INTERRUPTED
 from pin_metaik.cli.many import split
 from pin_metaik.compare import CASES, Suite, write_report
 from pin_metaik.compare import compare as run
 from pin_metaik.compare import replay as again
 from pin_metaik.interrupts import kept
-
-INTERRUPTED = 130  # what shells make of Ctrl-C
 
 
 class Backend(StrEnum):
@@ -42,7 +41,7 @@ def compare(
     seeds: Annotated[int, typer.Option(min=1, help="Repetitions of each method on each task.")] = 1,
     budget: Annotated[int, typer.Option(min=1, help="Kernel evaluations for each target.")] = 5000,
     rng: Annotated[int, typer.Option(min=0, help="Seed of everything random.")] = 0,
-    jobs: Annotated[int, typer.Option(help="Processes; -1: one a core. The rows do not depend on it.")] = 1,
+    jobs: Annotated[int, typer.Option(help="Processes, 1 or more; -1: one a core. The rows do not depend on it.")] = 1,
     backend: Annotated[Backend, typer.Option(help="Processes here, or a Dask cluster.")] = Backend.LOKY,
     scheduler: Annotated[str | None, typer.Option(help="Of the Dask cluster, e.g. tcp://localhost:8786.")] = None,
 ) -> None:

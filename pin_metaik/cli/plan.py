@@ -14,15 +14,18 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from pin_metaik.cli.codes import INTERRUPTED
+from pin_metaik.cli.versions import versions
 from pin_metaik.compare.report.write import need_figures
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import kept
 from pin_metaik.optimize import ALGORITHMS, AskTell, Budget
+from pin_metaik.output import writable
 
 if TYPE_CHECKING:  # shapely is an extra, and none of the other commands should wait for it
     from pin_metaik.mobile import PathPlan, Scene, SynchroDrive, TrajectoryPlan
 
-INTERRUPTED = 130  # what shells make of Ctrl-C
+UNITS = {"length": "that of the scene, m with a trajectory", "angle": "rad", "time": "s"}
 MARGIN = 0.1  # m, when a trajectory is wanted: curves need room inside the corners
 RANDOM = "random:"
 TRAJECTORIES = ("dp", "de", "ann")
@@ -70,8 +73,10 @@ def plan(
     """
     from pin_metaik import mobile
 
-    if out is not None and figures:
-        need_figures()
+    if out is not None:
+        writable(out, folder=True)
+        if figures:
+            need_figures()
     if trajectory is not None and trajectory not in TRAJECTORIES:
         raise InvalidSetting(f"no trajectory {trajectory!r}; known: {', '.join(TRAJECTORIES)}")
     if paths > 1 and method != "exact":
@@ -81,6 +86,7 @@ def plan(
     room = margin if margin is not None else MARGIN if trajectory else 0.0
     world = _scene(scene, start, goal, keep + room)
     problem = mobile.PathProblem.of(world, keep, room, join)  # type: ignore[arg-type]  # it checks the join itself
+    _warm_up()
     with _progress("path") as tick:
         path = kept(
             lambda: mobile.plan_path(
@@ -106,7 +112,7 @@ def plan(
     found = plans[best].as_dict()
     if len(plans) > 1:
         found["alternatives"] = [each.as_dict() for i, each in enumerate(plans) if i != best]
-    report: dict[str, Any] = {"path": found}
+    report: dict[str, Any] = {"versions": versions(), "units": UNITS, "path": found}
     if motion is not None:
         report["trajectory"] = {key: value for key, value in motion.as_dict().items() if key != "samples"}
     if as_json:
@@ -119,6 +125,14 @@ def plan(
     if path.interrupted or any(each.interrupted for each in motions):
         raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if path.success and (motion is None or motion.success) else 1)
+
+
+def _warm_up() -> None:
+    """Plan round a box, so that what is compiled and imported once is not in the times shown."""
+    from pin_metaik import mobile
+
+    box = mobile.read_polygons([[(1.0, -1.0), (2.0, -1.0), (2.0, 1.0), (1.0, 1.0)]])
+    mobile.plan_path(mobile.Scene((0.0, 0.0), (3.0, 0.0), box))
 
 
 def _scene(source: str, start: Place, goal: Place, clearance: float) -> Scene:

@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.compare.method import Answer
 from pin_metaik.errors import MetaIKError, UnsupportedJoint
@@ -45,8 +46,10 @@ class Task:
     world: CollisionWorld | None = None
 
     @staticmethod
+    @checked
     def at(chain: Chain, X: Array, start: Array | None = None) -> Task:
         """To reach the poses of the coordinates X (K, n)."""
+        X = array("X", X, "K", chain.n)
         return Task(chain, tuple(chain.placements(q)[0] for q in chain.q(X)), X, start)
 
     @property
@@ -103,6 +106,7 @@ def reached(task: Task, attempt: Attempt) -> bool:
     return attempt.reached
 
 
+@checked
 @dataclass(frozen=True)
 class Case:
     """A family of tasks. One object of this class is all that a case of your own takes.
@@ -128,6 +132,7 @@ class Case:
     judge: Callable[[Task, Attempt], bool] = reached
     success: str = REACHED
 
+    @checked
     def task(self, chain: Chain, world: CollisionWorld | None, rng: np.random.Generator) -> Task:
         """The task that a generator leads to.
 

@@ -8,12 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.case import Task
 from pin_metaik.compare.store import read_record, read_rows
 from pin_metaik.compare.suite import pair_name
 from pin_metaik.compare.trial import Trial
 from pin_metaik.compare.unit import Unit
 from pin_metaik.errors import InvalidSetting, UnknownName
+
+ROWS = ("rotation", "", "")  # the word stands before the first row of a matrix
 
 
 @dataclass(frozen=True)
@@ -68,6 +71,7 @@ class Replay:
             yield f"made from x = {_numbers(self.task.planted[-1])}"
 
 
+@checked
 def replay(folder: Path, name: str) -> Replay:
     """Run a trial of a comparison again.
 
@@ -88,6 +92,9 @@ def replay(folder: Path, name: str) -> Replay:
         raise InvalidSetting(
             f"a trial is ROBOT/CASE/TARGET/METHOD/SEED, e.g. panda/singular/17/gwo+dls/0, got {name!r}"
         ) from None
+    for kind, number, count in (("target", numbers[0], suite.targets), ("seed", numbers[1], suite.seeds)):
+        if not 0 <= number < count:
+            raise InvalidSetting(f"the {kind}s of this comparison are 0 to {count - 1}, got {number}")
     for kind, word, known in (
         ("robot", robot, suite.arms),
         ("case", case, suite.tasks),

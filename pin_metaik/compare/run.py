@@ -14,6 +14,7 @@ from typing import Any, Literal, TypeAlias
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare import environment
 from pin_metaik.compare.baggage import pack
 from pin_metaik.compare.case import NoTask
@@ -25,9 +26,11 @@ from pin_metaik.compare.trial import Trial
 from pin_metaik.compare.unit import Unit
 from pin_metaik.errors import InvalidSetting, MissingExtra
 from pin_metaik.interrupts import Interrupted
+from pin_metaik.output import writable
 
 Backend: TypeAlias = Literal["loky", "dask"]
 
+MOST_JOBS = 10_000
 CONNECTING = 10.0  # s
 
 
@@ -68,6 +71,7 @@ class Outcome:
         return "\n".join([*without, f"{self.done:,} of {self.planned:,} rows, {fresh}{errors}: {state}"])
 
 
+@checked
 def compare(
     suite: Suite,
     folder: Path,
@@ -94,12 +98,17 @@ def compare(
 
     Raises:
         MissingExtra: joblib, pyarrow or distributed are not installed.
-        InvalidSetting: The folder holds another comparison, another process works on it, or the scheduler cannot be
-            reached.
+        InvalidSetting: The folder holds another comparison, another process works on it, jobs are none, or the
+            scheduler cannot be reached.
+        CannotWrite: The folder cannot be made or written into.
         NoTask: No robot has a task of any of the cases.
         Interrupted: Ctrl-C; its ``result`` is the outcome so far, and the same call goes on from there.
     """
     need_parquet()
+    if jobs == 0 or abs(jobs) > MOST_JOBS:
+        raise InvalidSetting(f"jobs is a number of processes, 1 to {MOST_JOBS:,}, or -1: one a core; got {jobs}")
+    writable(folder, folder=True)
+    need_joblib()
     began = perf_counter()
     absent = suite.absent()
     if len(absent) == len(suite.arms) * len(suite.tasks):
@@ -132,10 +141,18 @@ def compare(
         return outcome()
 
 
-def _worked(units: list[Unit], jobs: int, backend: Backend, scheduler: str | None) -> Iterator[list[Trial]]:
-    """The rows of units, in the order in which they are finished."""
+def need_joblib() -> None:
+    """Make sure that tasks can be handed to workers.
+
+    Raises:
+        MissingExtra: joblib is not installed.
+    """
     if find_spec("joblib") is None:
         raise MissingExtra("comparing methods", "compare")
+
+
+def _worked(units: list[Unit], jobs: int, backend: Backend, scheduler: str | None) -> Iterator[list[Trial]]:
+    """The rows of units, in the order in which they are finished."""
     from joblib import Parallel, delayed, parallel_config
 
     with contextlib.ExitStack() as stack:

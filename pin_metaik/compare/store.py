@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.record import Record
 from pin_metaik.compare.results import Results
 from pin_metaik.compare.trial import Trial
@@ -73,6 +74,7 @@ def read_rows(folder: Path) -> list[Trial]:
     return list(rows.values())
 
 
+@checked
 def read_results(folder: Path) -> Results:
     """The comparison of a folder and its rows so far, for statistics.
 

@@ -7,6 +7,7 @@ from collections.abc import Container, Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, field
 from typing import Any
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.case import Case
 from pin_metaik.compare.lookup import case_of, method_of
 from pin_metaik.compare.method import Method
@@ -17,6 +18,7 @@ from pin_metaik.errors import InvalidSetting
 from pin_metaik.robots import load_robot
 
 
+@checked
 @dataclass(frozen=True)
 class Suite:
     """A comparison.
@@ -75,6 +77,7 @@ class Suite:
                 found[pair_name(robot, case.name)] = reason
         return found
 
+    @checked
     def units(
         self, done: Set[tuple[str, str, str, int, int]] = frozenset(), absent: Container[str] = ()
     ) -> Iterator[Unit]:

@@ -36,7 +36,7 @@ def keep_clear(first: IKResult, q0: ArrayLike | None, solver: IKSolver, world: C
     base = chain.reference if q0 is None else chain.configuration(q0)
     ledger = Ledger(problem, solver.budget, began - first.seconds, first.x)
     ledger.spent = first.evaluations
-    search = ClearSearch(problem, world, base, ledger, rng)
+    search = ClearSearch(problem.whole if problem.loose else problem, world, base, ledger, rng)
     free: NDArray[np.float64] | None = None
     if not _hopeless(problem, world, first.q):
         free = search.run(first.x, make(FALLBACK if solver.seeder in (None, "auto") else solver.seeder))

@@ -20,6 +20,7 @@ class Ledger:
     """Keeps the best coordinates and the budget of one search.
 
     Attributes:
+        problem: What is searched for, and what costs are of.
         x: (n,) the best coordinates so far.
         met: Whether they met the tolerances, by the kernels; Pinocchio has the last word.
         spent: Evaluations so far.
@@ -31,7 +32,7 @@ class Ledger:
         self.met = False
         self.spent = 0
         self.traces: list[NDArray[np.float64]] = []
-        self._problem = problem
+        self.problem = problem
         self._budget = budget
         self._began = began
         self._cost = math.inf
@@ -39,7 +40,7 @@ class Ledger:
     @property
     def status(self) -> IKStatus:
         """Why a search ended that has not solved its problem."""
-        if self._problem.gap > 0.0:
+        if self.problem.gap > 0.0:
             return IKStatus.UNREACHABLE
         timed = self._budget.seconds is not None and self.left() > 0
         return IKStatus.STOPPED if timed else IKStatus.OUT_OF_TOLERANCE
@@ -56,7 +57,7 @@ class Ledger:
     def slice(self, share: float) -> Budget:
         """A budget for one round of seeding: this share of what is left."""
         total, seconds = self._budget.evaluations, self._budget.seconds
-        goal = self._problem.good_enough if self._budget.target is None else self._budget.target
+        goal = self.problem.good_enough if self._budget.target is None else self._budget.target
         return Budget(
             None if total is None else max(1, int(share * self.left())),
             None if seconds is None else max(1e-3, share * (seconds - self._elapsed())),
@@ -69,7 +70,7 @@ class Ledger:
         if refinement.met:
             self.met, self.x = True, refinement.x
             return
-        cost = float(self._problem.costs(refinement.x[None])[0])
+        cost = float(self.problem.costs(refinement.x[None])[0])
         if cost < self._cost:
             self._cost, self.x = cost, refinement.x
 

@@ -48,7 +48,7 @@ class IKResult:
         orientation_error: Angle to the target in rad, by Pinocchio; the worst frame's; 0 when orientation is free.
         evaluations: Forward kinematics computed, one a configuration.
         seconds: Time taken, s.
-        chain: The chain.
+        chain: The chain, with its held joints where ``q`` has them (``Chain.at``).
         given: The target as it was given, or ``None``: see ``target``.
         trace: (g, 2) evaluations and best cost after each generation of the seeder, when asked for.
         world: The world it must not collide in, if one was given. A pickle leaves it behind, as it has all meshes in
@@ -86,6 +86,9 @@ class IKResult:
     def success(self) -> bool:
         """Whether the target is met."""
         return self.status is IKStatus.SOLVED
+
+    def __bool__(self) -> bool:
+        return self.success
 
     @property
     def x(self) -> NDArray[np.float64]:
@@ -145,5 +148,5 @@ class IKResult:
     def __str__(self) -> str:
         return (
             f"{self.status}: {self.position_error:.3g} m, {self.orientation_error:.3g} rad from the target after "
-            f"{self.evaluations} evaluations in {1e3 * self.seconds:.4g} ms"
+            f"{self.evaluations} evaluation{'s' * (self.evaluations != 1)} in {1e3 * self.seconds:.4g} ms"
         )

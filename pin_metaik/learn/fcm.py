@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import Interrupted
 from pin_metaik.learn.arrays import Array, as_table
@@ -35,6 +36,7 @@ class Clusters:
     interrupted: bool = False
 
 
+@checked
 def fuzzy_c_means(
     Z: ArrayLike,
     clusters: int,
@@ -92,9 +94,14 @@ def fuzzy_c_means(
     return Clusters(centres, np.array(objective), converged)
 
 
+@checked
 def memberships(Z: ArrayLike, centres: ArrayLike, m: float = 2.0) -> Array:
     """The memberships (c, n) of points Z (n, d) in clusters with centres (c, d): columns sum to one."""
     Z, centres = as_table("the points", Z), as_table("the centres", centres)
+    if Z.shape[1] != centres.shape[1]:
+        raise InvalidSetting(f"points and centres have as many columns, got {Z.shape[1]} and {centres.shape[1]}")
+    if not 1 < m < math.inf:
+        raise InvalidSetting(f"m must be a finite number above 1, not {m!r}")
     W = np.empty((len(Z), len(centres)))
     _weigh(Z, centres, m, W, np.empty_like(W))
     U: Array = (W / W.sum(axis=1, keepdims=True)).T

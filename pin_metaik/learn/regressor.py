@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import wrapped
 from pin_metaik.learn.arrays import Array, as_table
@@ -98,13 +99,18 @@ class Regressor:
 
     def predict(self, X: Array) -> Array:
         """Outputs (n,) for inputs X (n, d), without a word about their range."""
-        return self.output.up(self.network.outputs(self.w, self.inputs.down(X))[:, None])[:, 0]
+        return self.output.up(self.network.outputs(self.w, self.inputs.down(self._given(X)))[:, None])[:, 0]
 
     def knows(self, X: Array) -> NDArray[np.bool_]:
         """Whether each of the inputs X (n, d) lies in the training range (n,)."""
-        return np.asarray((np.abs(self.inputs.down(X)) <= 1 + EDGE).all(axis=1))
+        return np.asarray((np.abs(self.inputs.down(self._given(X))) <= 1 + EDGE).all(axis=1))
+
+    def _given(self, X: Array) -> Array:
+        """Inputs (n, d) that somebody gave."""
+        return array("X", X, "n", self.network.inputs, finite=False)
 
 
+@checked
 def fit(
     X: ArrayLike,
     y: ArrayLike,
@@ -131,7 +137,7 @@ def fit(
         Interrupted: Ctrl-C; its ``result`` is the network with the best weights so far.
     """
     X = as_table("the inputs", X)
-    Y = as_table("the outputs", np.asarray(y)[:, None])
+    Y = array("the outputs", y, "n")[:, None]
     if len(X) != len(Y):
         raise InvalidSetting(f"{len(X)} inputs and {len(Y)} outputs: they must match")
     network, inputs, output = Network(X.shape[1], tuple(hidden)), Scale.of(X), Scale.of(Y)

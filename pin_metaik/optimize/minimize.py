@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidBudget
 from pin_metaik.interrupts import Interrupted
 from pin_metaik.optimize.asktell import AskTell, Status
@@ -43,6 +44,7 @@ class Result:
     elite_costs: Array
 
 
+@checked
 def minimize(
     objective: Callable[[Array], ArrayLike],
     box: Box,

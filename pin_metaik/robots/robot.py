@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import pinocchio as pin
 
+from pin_metaik.arguments import checked_as
 from pin_metaik.errors import InvalidModel, InvalidTable, UnknownName
 from pin_metaik.robots.description import Description, build_geometry, mimic_joints, read_urdf
 from pin_metaik.robots.library import LEFT_OUT, TIPS, catalogue, example_robots
@@ -101,6 +102,7 @@ def robot_names() -> list[RobotName]:
     return [RobotName(robot.name, source, robot.model.nv, robot.frame) for robot, source in loaded]
 
 
+@checked_as(InvalidModel)
 def load_robot(
     name: str | Path | RobotName,
     *,

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.interrupts import wrapped
 from pin_metaik.optimize import AskTell, Budget, Result, Status, minimize
 from pin_metaik.optimize.space import Array
@@ -20,7 +21,7 @@ class Designed:
 
     Attributes:
         mechanism: The best mechanism found, with the settings it was found with. If none was feasible, the one given.
-        score: Its fitness on the grid of the task, and the two parts of it; None if no design was feasible.
+        score: Its fitness, and the two parts of it, by a few thousand cells; None if no design was feasible.
         search: The search itself: why it ended, evaluations, seconds, trace.
     """
 
@@ -32,6 +33,9 @@ class Designed:
     def success(self) -> bool:
         """Whether a feasible design was found. One found before an interruption counts."""
         return self.score is not None
+
+    def __bool__(self) -> bool:
+        return self.success
 
     @property
     def interrupted(self) -> bool:
@@ -49,6 +53,25 @@ class Designed:
         return f"{self.mechanism.name}: {found} after {self.search.evaluations} designs in {self.search.seconds:.3g} s"
 
 
+class _Measured:
+    """A fitness that measures whatever would be the best design again, by more cells, before it may be.
+
+    A coarse grid flatters some designs, and a search finds these. So the best is only ever what a fine one says.
+    """
+
+    def __init__(self, fitness: Fitness) -> None:
+        self.fitness, self.best = fitness, np.inf
+
+    def __call__(self, X: Array) -> Array:
+        costs = self.fitness(X)
+        for k in np.argsort(costs, kind="stable"):
+            if costs[k] < self.best:
+                costs[k] = self.fitness.cost(X[k], fine=True)
+                self.best = min(self.best, float(costs[k]))
+        return costs
+
+
+@checked
 def design(
     mechanism: Mechanism, *, rng: int | np.random.Generator | None = None, watch: Watch | None = None
 ) -> Designed:
@@ -77,7 +100,7 @@ def design(
 
     def search() -> Result:
         return minimize(
-            fitness,
+            _Measured(fitness),
             fitness.variables.box,
             task.algorithm,
             Budget(evaluations=task.evaluations),
@@ -95,5 +118,5 @@ def _designed(mechanism: Mechanism, fitness: Fitness, found: Result) -> Designed
     if found.cost >= UNUSABLE:
         return Designed(mechanism, None, found)
     geometry, limits = fitness.build(fitness.variables.dimensions(found.x))
-    score = fitness.score(fitness.workspace(geometry, limits))
+    score = fitness.score(fitness.workspace(geometry, limits, fine=True))
     return Designed(replace(mechanism, geometry=geometry, limits=limits), score, found)

@@ -239,5 +239,5 @@ def test_a_pose_may_come_as_any_array_of_numbers() -> None:
     assert_allclose(result.target.homogeneous, pose, atol=1e-15)
     assert result.verify()
     assert mik.solve_ik(chain, pose.astype(np.float32)).success
-    with pytest.raises(InvalidConfiguration, match="6 numbers, got 'home'"):
+    with pytest.raises(InvalidConfiguration, match=r"numbers of shape \(6,\), got 'home'"):
         mik.solve_ik(chain, pose, "home")

@@ -68,7 +68,7 @@ def test_a_population_of_the_wrong_shape_is_told_so(population):
 
 @pytest.mark.parametrize("costs", [lambda X: 0.0, lambda X: X, lambda X: np.zeros((len(X), 1)), lambda X: [1.0]])
 def test_costs_of_the_wrong_shape_are_told_so(costs):
-    with pytest.raises(InvalidSetting, match=r"points of shape \(30, 2\): expected \(k,\)"):
+    with pytest.raises(InvalidSetting, match=r"costs: expected shape \(30,\)"):
         minimize(costs, BOX, "gwo", Budget(100))
 
 

@@ -9,6 +9,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.cost import price_of, steps_within
 from pin_metaik.compare.method import Answer
 from pin_metaik.compare.methods.priced import Priced
@@ -20,6 +21,7 @@ from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
 from pin_metaik.optimize.settings import whole
 
 
+@checked
 @dataclass(frozen=True)
 class Search:
     """Starts or a metaheuristic, then a refiner, as ``IKSolver`` combines them.
@@ -42,6 +44,7 @@ class Search:
         refiner = None if self.refiner is None else Priced(make_refiner(self.refiner))
         return IKSolver(self.seeder, refiner, starts=self.starts, trace=refiner is None)
 
+    @checked
     def solve(self, problem: IKProblem, x0: NDArray[np.float64], budget: int, rng: np.random.Generator) -> Answer:
         """Search within the budget."""
         solver = replace(self.solver, budget=Budget(evaluations=budget))

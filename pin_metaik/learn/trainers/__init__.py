@@ -6,6 +6,7 @@ from time import perf_counter
 
 import numpy as np
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.interrupts import Interrupted
 from pin_metaik.learn.arrays import Array
@@ -26,6 +27,7 @@ TRAINERS: dict[str, type[Trainer]] = {
 }
 
 
+@checked
 def make_trainer(trainer: str | Trainer) -> Trainer:
     """A trainer from its name, with its default settings; an object is returned as it is.
 
@@ -39,6 +41,7 @@ def make_trainer(trainer: str | Trainer) -> Trainer:
     return TRAINERS[trainer]()
 
 
+@checked
 def train(
     trainer: str | Trainer,
     network: Network,
@@ -65,6 +68,8 @@ def train(
         Interrupted: Ctrl-C; its ``result`` is the training so far, with the best weights.
     """
     trainer = make_trainer(trainer)
+    X, w = array("X", X, "n", network.inputs), array("w", w, network.count)
+    y = array("y", y, len(X))
     if iterations < 1:
         raise InvalidSetting(f"iterations must be at least 1, not {iterations!r}")
     if len(X) < network.count:

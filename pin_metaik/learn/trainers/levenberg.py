@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.learn.arrays import Array
 from pin_metaik.learn.trainers.protocol import Record, Task
@@ -14,6 +15,7 @@ HOPELESS = 1e12  # damping at which no step is left
 PIECE = 64  # rows
 
 
+@checked
 @dataclass(frozen=True)
 class LevenbergMarquardt:
     """Levenberg-Marquardt on the normal equations, Hagan and Menhaj 1994, IEEE Trans. Neural Networks 5.

@@ -9,7 +9,8 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
-from pin_metaik.errors import InvalidSetting
+from pin_metaik.arguments import array, checked
+from pin_metaik.errors import InvalidGeometry, InvalidSetting
 from pin_metaik.interrupts import wrapped
 from pin_metaik.mobile.motion.learned import LearnedCorners, LearnedTurn, learn_turn
 from pin_metaik.mobile.motion.result import Method, TrajectoryPlan
@@ -29,6 +30,7 @@ SEARCH = DE(agents=30)  # with best/1/bin it stops early: up to 3 % too slow wit
 SEARCH_BUDGET = Budget(evaluations=30 * 500)
 
 
+@checked
 def plan_trajectory(
     path: Path | ArrayLike,
     vehicle: SynchroDrive = NOMAD_200,
@@ -73,7 +75,9 @@ def plan_trajectory(
     if method == "ann":
         model = model or learn_turn(vehicle)
     began = perf_counter()
-    route = Route.along(path if isinstance(path, Path) else Path(np.asarray(path)), vehicle, obstacles, keep)
+    if not isinstance(path, Path):
+        path = Path(array("path", path, "n", 2, error=InvalidGeometry))
+    route = Route.along(path, vehicle, obstacles, keep)
     turns = model.at(np.abs(route.turns)) if method == "ann" and model is not None else None
 
     def planned(speeds: Speeds) -> TrajectoryPlan:

@@ -7,6 +7,7 @@ from time import perf_counter
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.interrupts import wrapped
 from pin_metaik.mobile.errors import NoPath
@@ -32,6 +33,7 @@ PAPER_BUDGET = Budget(evaluations=50 * 100)
 PAPER_VIA = 5
 
 
+@checked
 def plan_path(
     problem: PathProblem | Scene,
     method: str | Metaheuristic = EXACT,
@@ -48,8 +50,9 @@ def plan_path(
 
     Args:
         problem: A problem, or a scene for a point robot.
-        method: ``"exact"``, the shortest path by the visibility graph; or a metaheuristic over via points, by name
-            (``"ga"`` and ``"pso"`` with the settings of the paper's Table 2) or as an object.
+        method: ``"exact"``, the shortest path by the visibility graph (with a clearance: among the grown obstacles); or
+            a metaheuristic over via points, by name (``"ga"`` and ``"pso"`` with the settings of the paper's Table 2)
+            or as an object.
         fitness: What metaheuristics minimise: ``"exact"``, ``"paper"`` or an object.
         via: Via points. With fewer than the shortest path has corners it is out of reach.
         budget: What a metaheuristic may spend; an evaluation is one path.
@@ -75,7 +78,7 @@ def plan_path(
     if method == EXACT:
         began = perf_counter()
         path = problem.optimum
-        return _exact(path, problem, PathStatus.OPTIMAL, perf_counter() - began, seed)
+        return _exact(path, problem, _rank(path, problem), perf_counter() - began, seed)
     whole("via", via, 1)
     algorithm = _algorithm(method)
     objective = make_fitness(fitness).on(problem.space, problem.scene.start, problem.scene.goal)
@@ -109,6 +112,7 @@ def _searched(problem: PathProblem, found: Result, method: str, seed: int | None
     )
 
 
+@checked
 def plan_alternatives(problem: PathProblem | Scene, count: int) -> list[PathPlan]:
     """The shortest path and those that go another way round, one for each homotopy class, shortest first.
 
@@ -126,7 +130,7 @@ def plan_alternatives(problem: PathProblem | Scene, count: int) -> list[PathPlan
     began = perf_counter()
     paths = problem.alternatives(count)
     took = perf_counter() - began
-    rank = [PathStatus.OPTIMAL, *[PathStatus.FREE] * (len(paths) - 1)]
+    rank = [_rank(paths[0], problem), *[PathStatus.FREE] * (len(paths) - 1)]
     return [_exact(path, problem, status, took, None) for path, status in zip(paths, rank, strict=True)]
 
 
@@ -134,6 +138,12 @@ def _exact(path: Path, problem: PathProblem, status: PathStatus, seconds: float,
     """A plan that needed no search."""
     length = path.length
     return PathPlan(path, status, problem.optimum.length, length, EXACT, 0, seconds, seed, False, problem)
+
+
+def _rank(path: Path, problem: PathProblem) -> PathStatus:
+    """What the shortest path among grown obstacles is: the shortest of all, if nothing was grown that it bends at."""
+    exact = not problem.space.clearance or not len(path.corners)
+    return PathStatus.OPTIMAL if exact else PathStatus.SHORTEST
 
 
 def _algorithm(method: str | Metaheuristic) -> Metaheuristic:
