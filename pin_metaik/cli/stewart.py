@@ -14,6 +14,7 @@ import typer
 from rich.console import Console
 
 from pin_metaik import stewart
+from pin_metaik.cli.codes import INTERRUPTED
 from pin_metaik.cli.settings import configured
 from pin_metaik.errors import InvalidSetting, InvalidTarget
 from pin_metaik.interrupts import kept
@@ -44,7 +45,6 @@ Picture = Annotated[Path | None, typer.Option(help="Also draw it and its workspa
 Norm = Annotated[str | None, typer.Option(help=f"Of the dexterity, instead of the file's: {', '.join(NORMS)}.")]
 Length = Annotated[str | None, typer.Option(help="Characteristic length: rm, best, or in the file's unit.")]
 Cells = Annotated[int | None, typer.Option(min=1, help="Cells along each axis, instead of the file's.")]
-INTERRUPTED = 130  # what shells make of Ctrl-C
 INDICES = ", ".join(get_args(Index))
 
 
