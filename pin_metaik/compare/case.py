@@ -147,6 +147,7 @@ class Case:
                 return replace(task, world=world)
         raise NoTask(f"none of {DRAWS:,} tasks is free of collisions")
 
+    @checked
     def lacks(self, robot: Robot, rng: np.random.Generator) -> str:
         """Why a robot has no task of this case, as far as can be told without its world; empty if it has one."""
         try:

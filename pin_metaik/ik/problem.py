@@ -14,10 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, instance
 from pin_metaik.collision import CollisionWorld
-from pin_metaik.errors import FrameNotFound, InvalidSetting, InvalidTarget
+from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import Chain, Limits
-from pin_metaik.kinematics.model import as_configuration
 from pin_metaik.optimize import Box
 from pin_metaik.optimize.settings import few
 
@@ -170,10 +169,10 @@ class IKProblem:
 
     def verdict(self, q: NDArray[np.float64]) -> Verdict:
         """Judge a configuration q (nq,) with Pinocchio's forward kinematics, the limits, and coal."""
-        q = as_configuration(self.chain.model, q)
+        q = array("q", q, self.chain.model.nq, error=InvalidConfiguration, finite=False)
         position = orientation = 0.0
-        accepted = self.chain.limits.contains(self.chain.x(q))
-        for target, placement in zip(self.targets, self.chain.placements(q), strict=True):
+        accepted = self.chain.limits.contains(self.chain.coordinates.read(q))
+        for target, placement in zip(self.targets, self.chain._placed(q), strict=True):
             judged = target.judge(placement)
             position = max(position, judged.position_error)
             orientation = max(orientation, judged.orientation_error)

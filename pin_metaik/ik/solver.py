@@ -95,7 +95,8 @@ class IKSolver:
         """
         began = perf_counter()
         instance(IKProblem, problem=problem)
-        instance(Refinement | None, first=first)
+        if first is not None:
+            instance(Refinement, first=first)
         if q0 is not None:
             problem = problem.at(q0)
         chain = problem.chain

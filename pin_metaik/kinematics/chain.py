@@ -231,7 +231,7 @@ class Chain:
         Raises:
             InvalidConfiguration: If its length is not nq or an entry is not finite.
         """
-        return self.inside(as_configuration(self.model, q))
+        return np.minimum(np.maximum(as_configuration(self.model, q), self._least), self._most)
 
     def inside(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
         """The nearest configurations inside the limits to q (..., nq); pairs and quaternions are left alone."""
@@ -343,7 +343,11 @@ class Chain:
 
     def placements(self, q: NDArray[np.float64]) -> list[pin.SE3]:
         """World placement of each frame at configuration q (nq,), by Pinocchio."""
-        pin.forwardKinematics(self.model, self.data, as_configuration(self.model, q))
+        return self._placed(as_configuration(self.model, q))
+
+    def _placed(self, q: NDArray[np.float64]) -> list[pin.SE3]:
+        """The same, of a configuration that was looked at already."""
+        pin.forwardKinematics(self.model, self.data, q)
         return [pin.SE3(pin.updateFramePlacement(self.model, self.data, f)) for f in self.frame_ids]
 
     def poses(self, X: ArrayLike) -> NDArray[np.float64]:

@@ -112,7 +112,9 @@ class Limits:
     def contains(self, x: NDArray[np.float64], tolerance: float = 0.0) -> bool:
         """Whether every coordinate is inside its limits, up to ``tolerance`` (rad or m)."""
         # Plain floats: on a handful of numbers three times quicker than numpy's reductions.
-        x, tolerance = array("x", x, len(self.names), finite=False), number("tolerance", tolerance)
+        x = array("x", x, len(self.names), finite=False)
+        if type(tolerance) is not float:
+            tolerance = number("tolerance", tolerance)
         return all(
             low - tolerance <= v <= high + tolerance for (low, high), v in zip(self._pairs, x.tolist(), strict=True)
         )

@@ -17,6 +17,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import pinocchio as pin
 
+from pin_metaik.arguments import checked, checked_as
 from pin_metaik.errors import InvalidBounds, InvalidModel
 
 Base = Literal["fixed", "free flyer", "planar"]
@@ -25,6 +26,7 @@ ROOTS = {"free flyer": pin.JointModelFreeFlyer, "planar": pin.JointModelPlanar}
 _STDERR = threading.Lock()
 
 
+@checked_as(InvalidModel)
 @dataclass(frozen=True)
 class Description:
     """What a model is made from: plain values, so that a process that gets them makes the same model again.
@@ -56,6 +58,7 @@ class Description:
 _MADE_FROM: WeakKeyDictionary[pin.Model, Description] = WeakKeyDictionary()
 
 
+@checked
 def description_of(model: pin.Model) -> Description | None:
     """What a model was made from, or None if it is not one of ``Description.model``."""
     return _MADE_FROM.get(model)
