@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from itertools import islice
 from time import perf_counter
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +26,8 @@ from pin_metaik.ik.starts import start_batches
 from pin_metaik.ik.target import DEFAULT_TOLERANCE
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
 from pin_metaik.randomness import DEFAULT_SEED, Rng, as_generator
+
+Refine: TypeAlias = Callable[[IKProblem, NDArray[np.float64], int], Refinement]
 
 ELITE = 8  # points of a seeder's search that are refined
 SEEDER_SHARE = 0.25  # of the budget, for one round of the seeder before its elite is refined
@@ -172,36 +175,30 @@ class IKSolver:
         """
         share = 1.0 - RESERVE if self._seeder is None else RESTART_SHARE
         batches = partial(start_batches, problem.chain, x0, rng, self.starts)
-        if not problem.loose:
-            self._refine(problem, refiner, batches(tried), bool(tried), ledger, share)
-            if self.starts is None and not ledger.met:  # starts that were counted are not counted twice
-                self._refine(problem.whole, refiner, islice(batches(), 1), False, ledger, share + RESERVE)
-            return
-        if not tried:
-            self._refine(problem, refiner, islice(batches(), 1), False, ledger, share)
-        if not ledger.met:
-            self._refine(problem.whole, refiner, batches(), False, ledger, share)
+        anywhere = refiner.refine
+        if self._seeder is not None and isinstance(refiner, DLS):
+            anywhere = refiner.refine_anywhere
 
-    def _refine(
-        self,
-        problem: IKProblem,
-        refiner: Refiner,
-        batches: Iterator[NDArray[np.float64]],
-        begun: bool,
-        ledger: Ledger,
-        share: float,
-    ) -> None:
-        """Refine from one batch of starts after the other; the automatic solver begins with an atlas of the chain."""
-        refine = refiner.refine
-        if self._seeder is not None and isinstance(refiner, DLS) and not begun:
-            refine = refiner.refine_anywhere
-        if ledger.over(share) or (ledger.spent + begun and problem.gap > 0.0):
+        def over(share: float) -> bool:
+            return ledger.over(share) or problem.gap > 0.0
+
+        def refine(aim: IKProblem, first: Refine, batches: Iterator[NDArray[np.float64]], share: float) -> None:
+            for starts in batches:
+                ledger.add(first(aim, starts, ledger.left(share)))
+                if over(share):
+                    return
+                first = refiner.refine
+
+        if problem.loose:
+            if not tried:
+                refine(problem, anywhere, islice(batches(), 1), share)
+            if not over(share):
+                refine(problem.whole, anywhere, batches(), share)
             return
-        for starts in batches:
-            ledger.add(refine(problem, starts, ledger.left(share)))
-            if ledger.over(share) or problem.gap > 0.0:
-                return
-            refine = refiner.refine
+        if not tried or not over(share):
+            refine(problem, refiner.refine if tried else anywhere, batches(tried), share)
+        if not ledger.met and self.starts is None and not over(share + RESERVE):  # no start counts twice
+            refine(problem.whole, anywhere, islice(batches(), 1), share + RESERVE)
 
     def _seed(
         self,
