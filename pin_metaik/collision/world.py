@@ -15,11 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.collision.body import Body, Geometry, robot_bodies
 from pin_metaik.collision.checker import Checker
 from pin_metaik.collision.contact import Contact, Distance
-from pin_metaik.collision.layout import lay_out, moved
+from pin_metaik.collision.layout import Samples, lay_out, sample
 from pin_metaik.collision.obstacle import Obstacle, placement
 from pin_metaik.collision.pairs import Srdf, disabled_pairs
 from pin_metaik.collision.shapes import Shape
 from pin_metaik.collision.simplify import Simplify, solid_of
+from pin_metaik.collision.solids import Solids
 from pin_metaik.collision.srdf import Pair, pair_of, write_srdf
 from pin_metaik.errors import FrameNotFound, InvalidGeometry, InvalidSetting, UnknownName
 from pin_metaik.kinematics.model import as_configuration
@@ -82,6 +83,7 @@ class CollisionWorld:
         self.obstacles: tuple[Obstacle, ...] = ()
         self.grasped: tuple[tuple[Obstacle, str], ...] = ()
         self._others: dict[str, Body] = {}
+        self._samples: Samples = {}
         self._checker: Checker | None = None
         for obstacle in obstacles:
             self._enter(obstacle, 0, obstacle.pose)
@@ -129,9 +131,7 @@ class CollisionWorld:
         there = placement(name, pose)
         self._others[name] = replace(self._others[name], placement=there)
         self.obstacles = tuple(replace(o, pose=there) if o.name == name else o for o in self.obstacles)
-        if self._checker is not None:
-            number = [body.link for body in self._checker.bodies].index(name)
-            self._checker = moved(self._checker, number, there, self._allowed)
+        self._checker = None
 
     def remove(self, name: str) -> None:
         """Take away an obstacle or a grasped object.
@@ -222,8 +222,13 @@ class CollisionWorld:
     def checker(self) -> Checker:
         """The checks as they are laid out now."""
         if self._checker is None:
-            bodies = (*self._links, *self._others.values())
-            self._checker = lay_out(self.model, bodies, self._allowed, self.margin, self.exact)
+            held = {obstacle.name for obstacle, _ in self.grasped}
+            others = self._others.items()
+            moving = (*self._links, *(body for name, body in others if name in held))
+            standing = tuple(body for name, body in others if name not in held)
+            solids = Solids(self.model, moving, standing)
+            self._samples = sample(solids, self.disabled, self.margin, self._samples)
+            self._checker = lay_out(solids, self._samples, self.disabled, self.margin, self.exact)
         return self._checker
 
     def in_collision(self, q: ArrayLike) -> bool:
@@ -265,9 +270,6 @@ class CollisionWorld:
             InvalidConfiguration: If a row is not a configuration of the model.
         """
         return np.array([self.min_distance(q).distance for q in np.asarray(Q, dtype=float)])
-
-    def _allowed(self, a: Body, b: Body) -> bool:
-        return pair_of(a.link, b.link) in self.disabled
 
     def _enter(self, obstacle: Obstacle, joint: int, at: pin.SE3) -> None:
         if obstacle.name in self.names:

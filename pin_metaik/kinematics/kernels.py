@@ -16,8 +16,6 @@ Arrays every kernel takes (made by ``Chain`` and ``IKProblem``; S joints on all 
 
 Seen from the target frame, a solved tip stands at the identity: position error p, orientation error log(R), and no
 target left to subtract. ``x`` is (n,), a population ``X`` is (k, n).
-
-Numba looks at one file to decide whether its cache is stale: after changing a part that another file uses, touch both.
 """
 
 from __future__ import annotations
