@@ -129,7 +129,7 @@ def solve_ik_batch(
         batch.position_error[i], batch.orientation_error[i] = result.position_error, result.orientation_error
         batch.evaluations[i] = result.evaluations
 
-    settings = solver.lane if array is not None and len(chain.frames) == 1 else None
+    settings = solver.lane if array is not None and chain.has_lane else None
     workers = workers or os.cpu_count() or 1
     left: Iterable[int] = range(k)
     if array is not None and settings is not None and k:

@@ -128,11 +128,16 @@ class IKProblem:
 
     @cached_property
     def gap(self) -> float:
-        """How far (m) the targets are proved to be out of reach; 0 proves nothing."""
-        return max(
-            self.chain.reach(t, oriented=math.isfinite(target.allowance[1])).gap(target.pose, *target.allowance)
-            for t, target in enumerate(self.targets)
-        )
+        """How far (m) the targets, or the wrists behind them, are proved to be out of reach; 0 proves nothing."""
+        return max(self._gap(t, oriented=math.isfinite(one.allowance[1])) for t, one in enumerate(self.targets))
+
+    def gaps(self, t: int) -> tuple[float, float]:
+        """How far (m) target number t is proved to be out of reach: the frame itself, and with its orientation."""
+        oriented = math.isfinite(self.targets[t].allowance[1])
+        return self._gap(t, oriented=False), self._gap(t, oriented)
+
+    def _gap(self, t: int, oriented: bool) -> float:
+        return self.chain.reach(t, oriented).gap(self.targets[t].pose, *self.targets[t].allowance)
 
     def linearize(self, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Weighted residual r (m,) and its Jacobian by coordinate J (n, m) at x (n,)."""

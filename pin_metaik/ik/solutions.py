@@ -127,7 +127,7 @@ def collect(
     """
     found, complete, spent = _collect(problem, x0, rng, limit, apart, budget)
     left = (budget.evaluations or 0) - spent
-    if len(found) or left <= 0 or problem.gap > 0.0:
+    if len(found) or left <= 0 or problem.gap > 0.0 or problem.limits.rigid:
         return problem, found, complete and not _roomy(problem, apart), spent
     rest = replace(budget, evaluations=min(left, WHOLE))
     found, complete, more = _collect(problem.whole, x0, rng, limit, apart, rest)
@@ -149,7 +149,7 @@ def _collect(
     known, complete, spent = _by_closed_form(problem, x0, found, apart, total)
     if complete:
         return found[:known], True, spent
-    vain = 0
+    vain, unreachable = 0, problem.gap > 0.0 or problem.limits.rigid
     for index in count():
         starts = drawn(problem.chain, rng, index, BATCH)
         if index == 0:
@@ -161,7 +161,7 @@ def _collect(
         known, spent = more, spent + evaluations
         enough = VAIN + VAIN_EACH * known
         late = budget.seconds is not None and perf_counter() - began >= budget.seconds
-        if known == limit or spent >= total or late or (vain >= enough) or (known == 0 and problem.gap > 0.0):
+        if known == limit or spent >= total or late or (vain >= enough) or (known == 0 and unreachable):
             return found[:known], known < limit and vain >= enough, spent
     raise AssertionError("count() does not end")
 

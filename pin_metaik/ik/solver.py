@@ -103,8 +103,10 @@ class IKSolver:
         ledger = Ledger(problem.whole if problem.loose else problem, self.budget, began, x0)
         if first is not None:
             ledger.add(first)
+        if chain.limits.rigid:  # there is nothing to search: it stands where it stands
+            ledger.x, ledger.met, ledger.spent = chain.limits.lower, True, 1
         try:
-            if self.select != "first":
+            if self.select != "first" and not ledger.met:
                 self._choose(problem, x0, base, rng, ledger)
             if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
                 self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
