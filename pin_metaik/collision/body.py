@@ -13,9 +13,11 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import shown
 from pin_metaik.collision.extent import stand
 from pin_metaik.collision.simplify import Simplify, Solid, solid_of
-from pin_metaik.errors import InvalidGeometry
+from pin_metaik.errors import InvalidGeometry, InvalidSetting
+from pin_metaik.kinematics.model import model_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +76,30 @@ class Geometry(Protocol):
     def srdf(self) -> Path | None:
         """File with disabled collisions, or None."""
         ...
+
+
+@dataclass(frozen=True)
+class _Wrapped:
+    """Pinocchio's ``RobotWrapper``, and what it has no word for."""
+
+    name: str
+    model: pin.Model
+    collision_model: pin.GeometryModel
+    srdf: Path | None = None
+
+
+def geometry_of(robot: Geometry) -> Geometry:
+    """What a world needs of a robot, of Pinocchio's ``RobotWrapper`` as well.
+
+    Raises:
+        InvalidSetting: Neither a robot nor anything that has its geometry.
+    """
+    model = model_of(robot)
+    if isinstance(robot, pin.Model) or not hasattr(robot, "collision_model"):
+        raise InvalidSetting(f"a world needs a robot's geometry, e.g. mik.load_robot('panda'), got {shown(robot)}")
+    if hasattr(robot, "srdf") and hasattr(robot, "name"):
+        return robot
+    return _Wrapped(model.name, model, robot.collision_model)
 
 
 def robot_bodies(robot: Geometry, simplify: Simplify) -> tuple[Body, ...]:

@@ -51,9 +51,9 @@ def stand(geometry: Any, box: NDArray[np.float64], row: NDArray[np.float64]) -> 
 def centre(geometry: Any) -> NDArray[np.float64]:
     """(1, 3) a point inside a convex geometry, in its frame, m; the middle of the box of any other."""
     if isinstance(geometry, coal.ConvexBase):
-        points: NDArray[np.float64] = np.array(geometry.points())
-        return points.mean(axis=0, keepdims=True)
+        middle: NDArray[np.float64] = np.array(geometry.points()).mean(axis=0, keepdims=True)
+        return middle
     if is_flat(geometry):
-        return float(geometry.d) * np.array(geometry.n)[None]
-    middle: NDArray[np.float64] = box_of(geometry)[None, :3]
-    return middle.copy()
+        surface: NDArray[np.float64] = float(geometry.d) * np.array(geometry.n)[None]
+        return surface
+    return box_of(geometry)[None, :3].copy()

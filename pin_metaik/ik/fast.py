@@ -71,7 +71,7 @@ def solve_fast(
             met, position, quaternion = lane.solve_directly(lane.block, matrix, q)
         if not met:
             spent, position, quaternion = lane.solve_pose(lane.block, lane.rows, starts, settings, matrix, q)
-    except (TypeError, ValueError):  # whatever it is, the long way takes it or says what is wrong
+    except (TypeError, ValueError, OverflowError):  # whatever it is, the long way takes it or says what is wrong
         return None
     if spent < 0:
         return None
@@ -90,5 +90,5 @@ def as_numbers(target: object) -> NDArray[np.float64]:
     """Lists or an array of any numbers as an array; an empty one, if they are none."""
     try:
         return np.array(target, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return np.empty(0)

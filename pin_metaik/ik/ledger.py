@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine import Refinement
 from pin_metaik.ik.result import IKStatus
-from pin_metaik.optimize import Budget, Result, Status
+from pin_metaik.optimize import Budget, Result
 
 ENDLESS = 2**62
 
@@ -24,7 +24,6 @@ class Ledger:
         x: (n,) the best coordinates so far.
         met: Whether they met the tolerances, by the kernels; Pinocchio has the last word.
         spent: Evaluations so far.
-        interrupted: Whether Ctrl-C ended it.
         traces: Convergence of each round of a seeder: (g, 2) evaluations and best cost.
     """
 
@@ -32,7 +31,6 @@ class Ledger:
         self.x = x0
         self.met = False
         self.spent = 0
-        self.interrupted = False
         self.traces: list[NDArray[np.float64]] = []
         self.problem = problem
         self._budget = budget
@@ -45,7 +43,7 @@ class Ledger:
         if self.problem.gap > 0.0 or self.problem.limits.rigid:
             return IKStatus.UNREACHABLE
         timed = self._budget.seconds is not None and self.left() > 0
-        return IKStatus.STOPPED if self.interrupted or timed else IKStatus.OUT_OF_TOLERANCE
+        return IKStatus.STOPPED if timed else IKStatus.OUT_OF_TOLERANCE
 
     def left(self, share: float = 1.0) -> int:
         """Evaluations left of this share of the budget."""
@@ -53,8 +51,8 @@ class Ledger:
         return ENDLESS if total is None else max(0, math.ceil(share * total) - self.spent)
 
     def over(self, share: float = 1.0) -> bool:
-        """Whether the search is over: solved, interrupted, or this share of the budget spent."""
-        return self.met or self.interrupted or self.left(share) == 0 or self.late(share)
+        """Whether the search is over: solved, or this share of the budget spent."""
+        return self.met or self.left(share) == 0 or self.late(share)
 
     def slice(self, share: float) -> Budget:
         """A budget for one round of seeding: this share of what is left."""
@@ -81,7 +79,6 @@ class Ledger:
         if found.trace is not None:
             self.traces.append(found.trace + np.array([self.spent, 0.0]))
         self.spent += found.evaluations
-        self.interrupted = self.interrupted or found.status is Status.INTERRUPTED
         if found.cost < self._cost:
             self._cost, self.x = found.cost, found.x
 

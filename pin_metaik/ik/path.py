@@ -13,6 +13,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, checked, shown
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidSetting, InvalidTarget
 from pin_metaik.ik.problem import IKProblem
@@ -62,6 +63,7 @@ class IKPath:
         return x
 
 
+@checked
 def solve_ik_path(
     chain: Chain,
     targets: Sequence[TargetLike] | NDArray[np.float64],
@@ -91,9 +93,12 @@ def solve_ik_path(
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
     """
     began = perf_counter()
+    if isinstance(targets, str) or not (isinstance(targets, Sequence) or np.ndim(targets)):
+        raise InvalidTarget(f"targets are a list of poses or positions, got {shown(targets)}")
     if len(targets) == 0:
         raise InvalidTarget("a path has at least one target")
-    bound = np.broadcast_to(np.asarray(max_step, dtype=float), (chain.n,))
+    given = array("max_step", max_step, "...", finite=False)
+    bound = np.full(chain.n, given) if given.ndim == 0 else array("max_step", given, chain.n, finite=False)
     if not (bound > 0.0).all():
         raise InvalidSetting(f"max_step is above 0, got {bound}")
     chain = chain if q0 is None else chain.at(q0)

@@ -12,11 +12,14 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, instance
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import FrameNotFound, InvalidSetting, InvalidTarget
 from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import Chain, Limits
+from pin_metaik.kinematics.model import as_configuration
 from pin_metaik.optimize import Box
+from pin_metaik.optimize.settings import few
 
 
 class Verdict(NamedTuple):
@@ -141,6 +144,7 @@ class IKProblem:
 
     def linearize(self, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Weighted residual r (m,) and its Jacobian by coordinate J (n, m) at x (n,)."""
+        x = array("x", x, self.chain.n)
         r, J = np.empty(len(self.rows)), np.empty((self.chain.n, len(self.rows)))
         self.chain.kernels.linearize(*self.chain.paths.arrays, self.tasks, self.rows, x, r, J)
         return r, J
@@ -153,6 +157,8 @@ class IKProblem:
 
     def near(self, count: int) -> NDArray[np.float64]:
         """Sampled coordinates (count, n) of the chain's atlas with the poses nearest to the targets, nearest first."""
+        few("count", count, 0)
+        count = int(count)
         out = np.empty((count, self.chain.n))
         self.chain.kernels.neighbours(self.tasks, *self.chain.atlas.arrays, count, out)
         return out
@@ -162,12 +168,14 @@ class IKProblem:
 
         For a position alone this is the distance in metres.
         """
+        X = array("X", X, "k", self.chain.n, finite=False)
         out = np.empty(len(X))
         self.chain.kernels.costs(*self.chain.paths.arrays, self.tasks, X, out)
         return out
 
     def verdict(self, q: NDArray[np.float64]) -> Verdict:
         """Judge a configuration q (nq,) with Pinocchio's forward kinematics, the limits, and coal."""
+        q = as_configuration(self.chain.model, q)
         position = orientation = 0.0
         accepted = self.chain.limits.contains(self.chain.x(q))
         for target, placement in zip(self.targets, self.chain.placements(q), strict=True):
@@ -185,6 +193,9 @@ class IKProblem:
 
 def check_world(chain: Chain, world: CollisionWorld | None) -> None:
     """Raise InvalidSetting if the world is another model's than the chain."""
+    instance(Chain, chain=chain)
+    if world is not None:
+        instance(CollisionWorld, world=world)
     if world is not None and world.model is not chain.model and world.model != chain.model:
         raise InvalidSetting(f"the world is of {world.model.name!r}, not of the chain's model {chain.model.name!r}")
 

@@ -10,14 +10,16 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.collision import CollisionWorld
-from pin_metaik.errors import InvalidBudget, InvalidSetting
+from pin_metaik.errors import InvalidBudget
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.dls import DLS, PROGRESS
 from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Budget
+from pin_metaik.optimize.settings import few, positive
 from pin_metaik.randomness import Rng
 
 BATCH = 128  # starts between two looks at what came of them
@@ -40,7 +42,7 @@ class IKSolutions:
             is a sample, and False.
         evaluations: Forward kinematics computed.
         seconds: Time taken, s.
-        problem: What was asked.
+        problem: What was asked; out of a pickle, without its world, which has all meshes in it.
     """
 
     q: NDArray[np.float64]
@@ -48,6 +50,10 @@ class IKSolutions:
     evaluations: int
     seconds: float
     problem: IKProblem = field(repr=False)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Pickle without the world: kilobytes rather than megabytes."""
+        return {**self.__dict__, "problem": replace(self.problem, world=None)}
 
     @property
     def x(self) -> NDArray[np.float64]:
@@ -61,6 +67,7 @@ class IKSolutions:
         return iter(self.q)
 
 
+@checked
 def solve_ik_all(
     chain: Chain,
     target: TargetLike | Sequence[TargetLike],
@@ -95,8 +102,8 @@ def solve_ik_all(
         InvalidSetting: If ``limit`` or ``apart`` is not above zero, or the world is another model's than the chain.
         InvalidBudget: If the budget has no limit on evaluations.
     """
-    if limit < 1 or not apart > 0.0:
-        raise InvalidSetting(f"limit is at least 1 and apart above 0, got {limit} and {apart}")
+    few("limit", limit)
+    positive("apart", apart)
     if budget.evaluations is None:
         raise InvalidBudget("collecting solutions needs a budget of evaluations: Budget(evaluations=...)")
     began = perf_counter()

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import instance
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.ik.avoid import keep_clear
 from pin_metaik.ik.fast import solve_fast
@@ -14,7 +15,7 @@ from pin_metaik.ik.result import IKResult
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
-from pin_metaik.randomness import Rng
+from pin_metaik.randomness import Rng, as_generator
 
 
 def solve_ik(
@@ -51,10 +52,21 @@ def solve_ik(
         InvalidBounds: If a joint of the chain has no finite range to search in.
         InvalidSetting: If the world is another model's than the chain.
     """
-    solver = solver or DEFAULT_SOLVER
-    if chain.held and q0 is not None:
-        chain = chain.at(q0)
-    fast = solve_fast(chain, target, q0, solver, rng)
+    solver = DEFAULT_SOLVER if solver is None else solver
+    try:
+        if chain.held and q0 is not None:
+            chain = chain.at(q0)
+        fast = solve_fast(chain, target, q0, solver, rng)
+    except (
+        AttributeError,
+        TypeError,
+    ):  # told here, where looking costs a quick solve nothing
+        instance(Chain, chain=chain)
+        instance(IKSolver, solver=solver)
+        as_generator(rng)
+        raise
+    if world is not None:
+        instance(CollisionWorld, world=world)
     if isinstance(fast, IKResult):
         result = fast
     else:

@@ -13,6 +13,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked, instance
 from pin_metaik.errors import InvalidBudget, InvalidSetting, UnknownName
 from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.nullspace import slide
@@ -37,6 +38,7 @@ CHOICE, CHOICE_SHARE = 64, 0.5  # solutions to choose from at most, and the shar
 RESERVE = 0.05  # of the budget, to settle down at the nearest pose when none is near enough
 
 
+@checked
 @dataclass(frozen=True)
 class IKSolver:
     """How to search: where starts come from, what refines them, and how much may be spent.
@@ -95,6 +97,8 @@ class IKSolver:
         ``first`` is what the fast lane came to, if it has tried the first starts already.
         """
         began = perf_counter()
+        instance(IKProblem, problem=problem)
+        instance(Refinement | None, first=first)
         if q0 is not None:
             problem = problem.at(q0)
         chain = problem.chain
@@ -105,17 +109,14 @@ class IKSolver:
             ledger.add(first)
         if chain.limits.rigid:  # there is nothing to search: it stands where it stands
             ledger.x, ledger.met, ledger.spent = chain.limits.lower, True, 1
-        try:
-            if self.select != "first" and not ledger.met:
-                self._choose(problem, x0, base, rng, ledger)
-            if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
-                self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
-            if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
-                self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
-            if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None:
-                ledger.add(self._refiner.settle(ledger.problem, ledger.x, ledger.left()))
-        except KeyboardInterrupt:
-            ledger.interrupted = True
+        if self.select != "first" and not ledger.met:
+            self._choose(problem, x0, base, rng, ledger)
+        if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
+            self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
+        if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
+            self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
+        if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None:
+            ledger.add(self._refiner.settle(ledger.problem, ledger.x, ledger.left()))
         q = base.copy()
         chain.coordinates.write(ledger.x, q)
         verdict = problem.verdict(q)
@@ -186,8 +187,9 @@ class IKSolver:
 
         def refine(aim: IKProblem, first: Refine, batches: Iterator[NDArray[np.float64]], share: float) -> None:
             for starts in batches:
+                before = ledger.spent
                 ledger.add(first(aim, starts, ledger.left(share)))
-                if over(share):
+                if over(share) or ledger.spent == before:
                     return
                 first = refiner.refine
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import NamedTuple, TypeAlias
@@ -11,10 +12,10 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, instance, shown
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.kinematics.pose import as_pose, as_position
 
-TargetLike: TypeAlias = "Target | pin.SE3 | ArrayLike"
 Tolerance: TypeAlias = float | tuple[float, float, float]
 
 Read: TypeAlias = tuple[Tolerance, tuple[float, float, float], float, bool]
@@ -59,6 +60,8 @@ class Target:
 
     def __post_init__(self) -> None:
         """Check everything once, where it enters."""
+        if self.frame is not None and not isinstance(self.frame, str):
+            raise InvalidTarget(f"frame is the name of one of the chain's frames, or None, got {shown(self.frame)}")
         placement, (a, b, c, x, d, e, f, y, g, h, i, z) = as_pose(self.pose)
         object.__setattr__(self, "pose", placement)
         metres, slack, near, wide = _read("position_tolerance", self.position_tolerance)
@@ -87,9 +90,7 @@ class Target:
     @staticmethod
     def facing(rotation: ArrayLike, *, frame: str | None = None, tolerance: Tolerance = DEFAULT_TOLERANCE) -> Target:
         """An orientation (3, 3), anywhere."""
-        matrix = np.asarray(rotation, dtype=float)
-        if matrix.shape != (3, 3):
-            raise InvalidTarget(f"an orientation has shape (3, 3), got {matrix.shape}")
+        matrix = array("an orientation", rotation, 3, 3, error=InvalidTarget)
         pose = pin.SE3(matrix, np.zeros(3))
         return Target(pose, frame, position_tolerance=FREE, orientation_tolerance=tolerance)
 
@@ -101,14 +102,14 @@ class Target:
         if isinstance(target, pin.SE3):
             return Target(target)
         try:
-            array = np.asarray(target, dtype=float)
-        except (TypeError, ValueError):
-            array = np.empty(0)
-        if array.shape == (4, 4):
-            return Target(array)
-        if array.shape == (3,):
-            return Target.at(array)
-        raise InvalidTarget(f"a target is a pin.SE3, a 4x4 matrix, a position (3,) or a Target, got {target!r}")
+            numbers = np.asarray(target, dtype=float)
+        except (TypeError, ValueError, OverflowError):
+            numbers = np.empty(0)
+        if numbers.shape == (4, 4):
+            return Target(numbers)
+        if numbers.shape == (3,):
+            return Target.at(numbers)
+        raise InvalidTarget(f"a target is a pin.SE3, a 4x4 matrix, a position (3,) or a Target, got {shown(target)}")
 
     @property
     def plain(self) -> bool:
@@ -137,10 +138,14 @@ class Target:
 
     def judge(self, placement: pin.SE3) -> Judgement:
         """How far a world placement is from this target, and whether that is close enough; by Pinocchio."""
+        instance(pin.SE3, placement=placement)
         error = self.pose.actInv(placement)
         position, near = _measure(error.translation.tolist(), self.position_tolerance)
         orientation, aligned = _measure(pin.log3(error.rotation).tolist(), self.orientation_tolerance)
         return Judgement(position, orientation, near and aligned)
+
+
+TargetLike: TypeAlias = Target | pin.SE3 | ArrayLike
 
 
 class Judgement(NamedTuple):
@@ -176,7 +181,7 @@ def _as_tolerance(name: str, tolerance: object) -> Tolerance:
     """The same as a float or a tuple of three."""
     try:
         given = np.asarray(tolerance, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         given = np.empty(0)
     if given.shape not in ((), (3,)) or not (given > 0.0).all():
         raise InvalidTarget(f"{name} is a number above 0, or three of them (inf frees an axis), got {tolerance!r}")
@@ -217,6 +222,6 @@ def _whole(tolerance: Tolerance) -> tuple[tuple[float, float, float], float]:
 
 
 def _weight(name: str, weight: float) -> float:
-    if not (isinstance(weight, (int, float, np.integer, np.floating)) and 0.0 < weight < math.inf):
-        raise InvalidTarget(f"{name} is a finite number above 0, got {weight!r}")
+    if not (isinstance(weight, (int, float, np.integer, np.floating)) and 0.0 < weight <= sys.float_info.max):
+        raise InvalidTarget(f"{name} is a finite number above 0, got {shown(weight)}")
     return float(weight)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from functools import cached_property
+from functools import cached_property, lru_cache
 from threading import Lock
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -12,11 +12,13 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.errors import FixedFrame
+from pin_metaik.arguments import array, checked, shown
+from pin_metaik.errors import FixedFrame, InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.kinematics.atlas import LEAF, SEED, Atlas, chart
 from pin_metaik.kinematics.closed_form import closed_form
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.model import (
+    HasModel,
     as_configuration,
     check_turns,
     coordinates_of,
@@ -24,16 +26,20 @@ from pin_metaik.kinematics.model import (
     frame_id,
     joint_id,
     limits_of,
+    model_of,
     neutral_inside,
 )
 from pin_metaik.kinematics.paths import Motion, base_moves, lay_paths, leader_of, motion_of
 from pin_metaik.kinematics.placing import Placing, Scratch
 from pin_metaik.kinematics.reach import Reach, reach_of
 from pin_metaik.optimize import Box
+from pin_metaik.optimize.settings import few
 from pin_metaik.randomness import DEFAULT_SEED, as_generator
+from pin_metaik.robots.pickling import reduce_model
 
 LANE = 256  # random starts of the fast lane
 REMEMBERED = 16  # sets of samples kept, and chains whose held joints are elsewhere
+REMADE = 16  # chains kept that came out of pickles
 
 
 class Lane(NamedTuple):
@@ -54,6 +60,7 @@ class Lane(NamedTuple):
     solve_pose: Callable[..., Any]
 
 
+@checked
 class Chain:
     """The joints on the way to one or several frames of a ``pin.Model``, as n coordinates with limits.
 
@@ -79,7 +86,7 @@ class Chain:
 
     def __init__(
         self,
-        model: pin.Model,
+        model: pin.Model | HasModel,
         frame: str | Iterable[str],
         *,
         locked: Iterable[str] = (),
@@ -89,7 +96,7 @@ class Chain:
         """Find the joints that move ``frame``.
 
         Args:
-            model: Any Pinocchio model.
+            model: Any Pinocchio model, or a robot that has one: a ``Robot``, or Pinocchio's ``RobotWrapper``.
             frame: A frame's name, or several that are to be placed at once.
             locked: Joints on the way that shall stay where they are; of one that mimics another, the other is locked.
             limits: Ranges (lower, upper) in rad or m that replace the model's, by joint name; those of a joint that
@@ -104,10 +111,13 @@ class Chain:
             UnknownName: If a locked joint does not exist.
             InvalidBounds: If limits are crossed or NaN, or those of joints that move together leave no room.
             InvalidConfiguration: If ``reference`` is not a configuration of the model.
+            InvalidSetting: If ``model`` is no robot, or no frame is named.
         """
+        self.model = model = model_of(model)
         self._made_from = (model, frame, tuple(locked), dict(limits or {}))
-        self.model = model
         self.frames = (frame,) if isinstance(frame, str) else tuple(frame)
+        if not self.frames:
+            raise InvalidSetting("name at least one frame for the chain to place, got none")
         self.frame_ids = tuple(frame_id(model, name) for name in self.frames)
 
         held = {leader_of(model, joint_id(model, name)) for name in locked}
@@ -203,8 +213,19 @@ class Chain:
         return self._own.data
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Pickle by what the chain was made from."""
-        return _remade, (*self._made_from, self.reference)
+        """Pickle by what the chain was made from, kilobytes; equal pickles are one chain where they are read.
+
+        Raises:
+            InvalidModel: If the model cannot be pickled; see ``pin_metaik.robots.pickling``.
+        """
+        return _remade, self._recipe
+
+    @cached_property
+    def _recipe(self) -> tuple[object, ...]:
+        """What ``_remade`` takes: plain values, to be compared."""
+        model, _, locked, limits = self._made_from
+        ranges = tuple((name, float(lower), float(upper)) for name, (lower, upper) in limits.items())
+        return *reduce_model(model), self.frames, locked, ranges, tuple(self.reference.tolist())
 
     @property
     def n(self) -> int:
@@ -213,15 +234,15 @@ class Chain:
 
     def q(self, x: ArrayLike, q0: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
         """Configurations (..., nq) at coordinates x (..., n); other joints stay as in ``q0`` (default: reference)."""
-        coordinates = np.asarray(x, dtype=float)
+        coordinates = array("x", x, "...", self.n, error=InvalidConfiguration, finite=False)
         q = np.empty((*coordinates.shape[:-1], self.model.nq))
-        q[...] = self.reference if q0 is None else q0
+        q[...] = self.reference if q0 is None else self._like("q0", q0, q.shape)
         self.coordinates.write(coordinates, q)
         return q
 
     def x(self, q: ArrayLike) -> NDArray[np.float64]:
         """Coordinates (..., n) of configurations q (..., nq); continuous joints as an angle in (-pi, pi]."""
-        return self.coordinates.read(np.asarray(q, dtype=float))
+        return self.coordinates.read(self._like("q", q))
 
     def configuration(self, q: ArrayLike) -> NDArray[np.float64]:
         """A configuration (nq,) somebody gave: checked, and with every joint brought inside its limits.
@@ -233,7 +254,12 @@ class Chain:
 
     def inside(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
         """The nearest configurations inside the limits to q (..., nq); pairs and quaternions are left alone."""
-        return np.minimum(np.maximum(q, self._least), self._most)
+        return np.minimum(np.maximum(self._like("q", q), self._least), self._most)
+
+    def _like(self, name: str, q: ArrayLike, shape: tuple[int, ...] | None = None) -> NDArray[np.float64]:
+        """Configurations (..., nq) somebody gave; if a shape is asked for, of that, or one (nq,) for all."""
+        given = array(name, q, "...", self.model.nq, error=InvalidConfiguration, finite=False)
+        return given if shape is None or given.ndim == 1 else array(name, given, *shape, error=InvalidConfiguration)
 
     @cached_property
     def box(self) -> Box:
@@ -265,6 +291,7 @@ class Chain:
 
         Where a joint does not matter, in a singularity, it stays as in x0. Without a closed form there are none.
         """
+        pose, x0 = array("pose", pose, 4, 4, error=InvalidTarget), array("x0", x0, self.n, error=InvalidConfiguration)
         out = np.empty((8, self.n))
         if not len(self.form):
             return out[:0]
@@ -311,7 +338,11 @@ class Chain:
         """Coordinates (count, n) drawn uniformly from the box; one array for a seed, so not to be written to."""
         try:
             return self._samples[count, seed]
-        except KeyError:
+        except (KeyError, TypeError):  # not drawn yet, or no such thing
+            few("count", count, 0)
+            count = int(count)
+            if not isinstance(seed, tuple) or not all(isinstance(one, (int, np.integer)) for one in seed):
+                raise InvalidSetting(f"a seed is a whole number of at least 0, got {shown(seed)}") from None
             if len(self._samples) == REMEMBERED:
                 self._samples.clear()
             self._samples[count, seed] = X = self.box.sample(as_generator(seed), count)
@@ -319,6 +350,8 @@ class Chain:
 
     def reach(self, tip: int, oriented: bool) -> Reach:
         """Bounds on how far tip number ``tip`` gets, for targets with or without a full orientation."""
+        if type(tip) is not int or not 0 <= tip < len(self.frames) or not isinstance(oriented, bool):
+            raise InvalidSetting(f"tip is 0 to {len(self.frames) - 1} and oriented a flag, got {tip!r}, {oriented!r}")
         if (tip, oriented) not in self._reaches:
             self._reaches[tip, oriented] = (
                 reach_of(self.paths, self.limits, tip, oriented)
@@ -329,7 +362,7 @@ class Chain:
 
     def placements(self, q: NDArray[np.float64]) -> list[pin.SE3]:
         """World placement of each frame at configuration q (nq,), by Pinocchio."""
-        pin.forwardKinematics(self.model, self.data, q)
+        pin.forwardKinematics(self.model, self.data, as_configuration(self.model, q))
         return [pin.SE3(pin.updateFramePlacement(self.model, self.data, f)) for f in self.frame_ids]
 
     def poses(self, X: ArrayLike) -> NDArray[np.float64]:
@@ -337,7 +370,8 @@ class Chain:
 
         Held joints are where ``reference`` has them; for others ask ``chain.at(q0).poses(X)``.
         """
-        population = np.ascontiguousarray(np.atleast_2d(np.asarray(X, dtype=float)))
+        population = np.atleast_2d(array("X", X, "...", self.n, error=InvalidConfiguration, finite=False))
+        population = population.reshape(-1, self.n)
         flat = np.empty((len(population), len(self.frames), 12))
         self.kernels.poses(*self.paths.arrays, population, flat)
         poses = np.zeros((*flat.shape[:2], 4, 4))
@@ -350,14 +384,18 @@ class Chain:
         return f"Chain({self.model.name}: {', '.join(self.frames)}; {self.n} joints: {', '.join(self.names)})"
 
 
+@lru_cache(maxsize=REMADE)
 def _remade(
-    model: pin.Model,
-    frame: str | Iterable[str],
+    make: Callable[..., pin.Model],
+    parts: tuple[Any, ...],
+    frames: tuple[str, ...],
     locked: tuple[str, ...],
-    limits: dict[str, tuple[float, float]],
-    reference: ArrayLike | None,
+    limits: tuple[tuple[str, float, float], ...],
+    reference: tuple[float, ...],
 ) -> Chain:
-    return Chain(model, frame, locked=locked, limits=limits, reference=reference)
+    """A chain from its pickle. The last few are kept: a thousand results, or calls of a worker, share one."""
+    ranges = {name: (lower, upper) for name, lower, upper in limits}
+    return Chain(make(*parts), frames, locked=locked, limits=ranges, reference=reference)
 
 
 def _kernels() -> ModuleType:

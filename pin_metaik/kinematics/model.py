@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import math
+from typing import Protocol
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.errors import FrameNotFound, InvalidConfiguration, UnknownName
+from pin_metaik.arguments import array, shown
+from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSetting, UnknownName
 from pin_metaik.kinematics.coordinates import Coordinates, consecutive
 from pin_metaik.kinematics.limits import Limits, finite_or_infinite
 from pin_metaik.kinematics.paths import motion_of
@@ -22,17 +23,31 @@ def as_configuration(model: pin.Model, q: ArrayLike) -> NDArray[np.float64]:
     Raises:
         InvalidConfiguration: If its length is not nq or an entry is not finite.
     """
-    try:
-        configuration = np.asarray(q, dtype=float)
-    except (TypeError, ValueError):
-        raise InvalidConfiguration(f"a configuration is {model.nq} numbers, got {q!r}") from None
-    if configuration.shape != (model.nq,):
-        raise InvalidConfiguration(
-            f"a configuration of {model.name!r} has shape ({model.nq},), got {configuration.shape}"
+    return array(f"a configuration of {model.name!r}", q, model.nq, error=InvalidConfiguration)
+
+
+class HasModel(Protocol):
+    """A robot that has a model: a ``Robot``, Pinocchio's ``RobotWrapper``, or an object of your own."""
+
+    @property
+    def model(self) -> pin.Model:
+        """Its model."""
+        ...
+
+
+def model_of(robot: pin.Model | HasModel) -> pin.Model:
+    """A model, or that of a robot.
+
+    Raises:
+        InvalidSetting: Neither a model nor a robot that has one.
+    """
+    model = robot if isinstance(robot, pin.Model) else getattr(robot, "model", None)
+    if not isinstance(model, pin.Model):
+        advice = f"; mik.load_robot({robot!r}) loads one" if isinstance(robot, str) else ""
+        raise InvalidSetting(
+            f"model is a robot, e.g. mik.load_robot('panda'), or its pin.Model, got {shown(robot)}{advice}"
         )
-    if not math.isfinite(np.add.reduce(configuration)):
-        raise InvalidConfiguration(f"a configuration has finite entries, got {configuration}")
-    return configuration
+    return model
 
 
 def neutral_inside(model: pin.Model) -> NDArray[np.float64]:

@@ -71,7 +71,8 @@ def motion_of(model: pin.Model, joint: int) -> Motion:
     elif kind.nv != 1:
         raise UnsupportedJoint(
             f"joint {model.names[joint]!r} on the path has {kind.nv} degrees of freedom; chains move joints with one: "
-            f"hold it where the reference has it: Chain(..., locked=[{model.names[joint]!r}])"
+            f"hold it where the reference has it: Chain(..., locked=[{model.names[joint]!r}]) "
+            f"or --lock {model.names[joint]}"
         )
     subspace = _constant_subspace(model, joint)
     linear, angular = subspace[:3], subspace[3:]
