@@ -78,11 +78,9 @@ def test_limits_of_a_joint_that_follows_bind_the_one_it_follows() -> None:
     assert not mik.solve_ik(chain, beyond).success
     both = mik.Chain(model, "d", limits={"one": (0.0, 0.1), "two": (-0.5, 0.9)})
     assert_allclose([both.limits.lower, both.limits.upper], [[0.0], [0.1]])
-    with pytest.raises(
-        InvalidBounds, match=r"'two' is at -2 'one' \+ 0.3: its limits \[2.5, 2.9\] leave no room to 'one'"
-    ):
+    with pytest.raises(InvalidBounds, match=r"'two' is at -2 'one' \+ 0\.3: its limits .* leave no room to 'one'"):
         mik.Chain(model, "d", limits={"two": (2.5, 2.9)})
-    with pytest.raises(InvalidBounds, match="'two' has its lower limit 1.0 above"):
+    with pytest.raises(InvalidBounds, match=r"'two' has its lower limit 1\.0 above"):
         mik.Chain(model, "d", limits={"two": (1.0, 0.0)})
 
 
