@@ -130,7 +130,7 @@ def every_robot(count: int) -> Row:
 
 
 def never_unreachable(count: int) -> Row:
-    """Targets that a configuration meets, of tolerances from 1e-9 on and in the tolerances' corners: none is refused."""
+    """Of targets that a configuration meets, at tolerances from 1e-9 on, how many are proved to be out of reach."""
     rng = np.random.default_rng(13)
     wrong = asked = 0
     for robot in track(ROBOTS, "feasible targets", transient=True):
