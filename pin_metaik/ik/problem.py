@@ -155,6 +155,14 @@ class IKProblem:
             return np.empty((0, self.chain.n))
         return self.chain.branches(self.targets[0].pose.homogeneous, x0)
 
+    def branchless(self, x0: NDArray[np.float64]) -> bool:
+        """Whether the arm has a closed form and that no solution, so that to search on at length is in vain.
+
+        It is no proof: near a singularity or a limit, rounding may hide a branch, but a short search finds those.
+        """
+        formal = self.descended is None and not self.loose and len(self.chain.form) > 0
+        return formal and not len(self.branches(x0))
+
     def near(self, count: int) -> NDArray[np.float64]:
         """Sampled coordinates (count, n) of the chain's atlas with the poses nearest to the targets, nearest first."""
         few("count", count, 0)

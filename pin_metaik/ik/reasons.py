@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.ik.problem import IKProblem
@@ -27,6 +28,11 @@ def out_of_reach(problem: IKProblem) -> str:
         f"{whose}out of reach with this orientation: it puts the wrist, a point of the last joint's axis, at least "
         f"{behind:.3g} m beyond what the links before it can span"
     )
+
+
+def no_branch(problem: IKProblem, x: NDArray[np.float64]) -> str:
+    """That the closed form of an arm has no solution, where that cut the search from x (n,) short."""
+    return "the arm's closed form has no solution inside the limits; " if problem.branchless(x) else ""
 
 
 def cannot_move(problem: IKProblem) -> str:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.dexterity import rank
 from pin_metaik.ik.problem import IKProblem
-from pin_metaik.ik.reasons import cannot_move, collisions, out_of_reach
+from pin_metaik.ik.reasons import cannot_move, collisions, no_branch, out_of_reach
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 
@@ -121,7 +121,9 @@ class IKResult:
                 stuck = (f"; at a limit: {', '.join(free)}" if free else "") + (f"; {still}" if still else "")
                 asked = len(self.problem.rows)
                 lost = f"; {asked - self.rank} of {asked} directions lost there" if self.rank < asked else ""
-                spent = f"nothing close enough found in {self.evaluations} evaluations"
+                spent = (
+                    no_branch(self.problem, self.x) + f"nothing close enough found in {self.evaluations} evaluations"
+                )
                 return f"{spent}; this is the nearest{stuck}{lost}"
             case IKStatus.IN_COLLISION:
                 shown = collisions(self.chain, self.world, self.contacts)

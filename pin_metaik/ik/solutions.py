@@ -18,6 +18,7 @@ from pin_metaik.ik.refine.dls import DLS, PROGRESS
 from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
+from pin_metaik.kinematics.closed_form import BRANCHLESS
 from pin_metaik.optimize import Budget
 from pin_metaik.optimize.settings import few, positive
 from pin_metaik.randomness import Rng
@@ -133,7 +134,7 @@ def collect(
     They are in the middle of the tolerances; if nothing is, anywhere in them, which is returned as the problem first.
     """
     total = budget.evaluations or 0
-    in_vain = min(MIDDLE, total) if problem.loose else total - total // 10
+    in_vain = MIDDLE if problem.loose else BRANCHLESS if problem.branchless(x0) else total - total // 10
     found, complete, spent = _collect(problem, x0, rng, limit, apart, budget, in_vain)
     if len(found) or spent >= total or problem.gap > 0.0 or problem.limits.rigid:
         return problem, found, complete and not _roomy(problem, apart), spent

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import islice
 from time import perf_counter
@@ -25,6 +25,7 @@ from pin_metaik.ik.select import SELECT
 from pin_metaik.ik.solutions import collect
 from pin_metaik.ik.starts import start_batches
 from pin_metaik.ik.target import DEFAULT_TOLERANCE
+from pin_metaik.kinematics.closed_form import BRANCHLESS
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
 from pin_metaik.randomness import DEFAULT_SEED, Rng, as_generator
 
@@ -104,7 +105,9 @@ class IKSolver:
         chain = problem.chain
         base = chain.reference if q0 is None else chain.configuration(q0)
         x0 = chain.x(base)
-        ledger = Ledger(problem.whole if problem.loose else problem, self.budget, began, x0)
+        brief = self.seeder == "auto" and problem.branchless(x0)
+        budget = replace(self.budget, evaluations=self._brief) if brief else self.budget
+        ledger = Ledger(problem.whole if problem.loose else problem, budget, began, x0)
         if first is not None:
             ledger.add(first)
         if chain.limits.rigid:  # there is nothing to search: it stands where it stands
@@ -113,7 +116,7 @@ class IKSolver:
             self._choose(problem, x0, base, rng, ledger)
         if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
             self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
-        if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
+        if self._seeder is not None and not brief and not ledger.over() and problem.gap == 0.0:
             self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
         if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None:
             ledger.add(self._refiner.settle(ledger.problem, ledger.x, ledger.left()))
@@ -154,6 +157,12 @@ class IKSolver:
             better = slide(problem, best, x0, measure)
             kept = problem.world is None or problem.accepts(problem.chain.q(better, base))
             ledger.x, ledger.met = better if kept else best, True
+
+    @property
+    def _brief(self) -> int:
+        """Evaluations in all where the closed form of an arm has no solution."""
+        most = math.ceil(BRANCHLESS / RESTART_SHARE)
+        return most if self.budget.evaluations is None else min(most, self.budget.evaluations)
 
     @cached_property
     def lane(self) -> NDArray[np.float64] | None:
