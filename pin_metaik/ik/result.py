@@ -121,10 +121,8 @@ class IKResult:
                 stuck = (f"; at a limit: {', '.join(free)}" if free else "") + (f"; {still}" if still else "")
                 asked = len(self.problem.rows)
                 lost = f"; {asked - self.rank} of {asked} directions lost there" if self.rank < asked else ""
-                spent = (
-                    no_branch(self.problem, self.x) + f"nothing close enough found in {self.evaluations} evaluations"
-                )
-                return f"{spent}; this is the nearest{stuck}{lost}"
+                spent = f"nothing close enough found in {self.evaluations} evaluations"
+                return f"{no_branch(self.problem, self.x)}{spent}; this is the nearest{stuck}{lost}"
             case IKStatus.IN_COLLISION:
                 shown = collisions(self.chain, self.world, self.contacts)
                 return f"met only in collision; the least deep found: {shown}"

@@ -71,6 +71,32 @@ def test_of_two_hands_the_one_that_is_out_of_reach_is_named() -> None:
     assert result.why.startswith("gripper_right_base_link is out of reach")
 
 
+@pytest.mark.parametrize("name", ["ur5", "puma560", "rv7fl"])
+def test_what_a_closed_form_has_no_solution_for_is_not_searched_for_long(name: str) -> None:
+    chain = chain_of(name)
+    rng = np.random.default_rng(0)
+    tips = [chain.placements(q)[0].translation for q in chain.q(chain.box.sample(rng, 60))]
+    poses = [pin.SE3(pin.exp3(2.0 * rng.standard_normal(3)), tip) for tip in tips]
+    results = [mik.solve_ik(chain, pose) for pose in poses]
+    missed = [result for result in results if result.status is mik.IKStatus.OUT_OF_TOLERANCE]
+    assert missed
+    for result in missed:
+        assert result.evaluations <= 2000
+        assert result.why.startswith("the arm's closed form has no solution inside the limits")
+        assert mik.solve_ik_all(chain, result.target).evaluations <= 20_000
+
+
+@pytest.mark.parametrize("name", ["ur5", "ur10", "puma560"])
+def test_what_rounding_hides_from_a_closed_form_is_found_all_the_same(name: str) -> None:
+    chain = chain_of(name)
+    rng = np.random.default_rng(1)
+    X = chain.box.sample(rng, 300)
+    X = np.where(rng.random(X.shape) < 0.5, np.where(rng.random(X.shape) < 0.5, chain.box.lower, chain.box.upper), X)
+    X[::2, 4] = rng.choice([0.0, 1e-9, 1e-5], 150)
+    for q in chain.q(X):
+        assert mik.solve_ik(chain, chain.placements(q)[0]).success
+
+
 ARM_AND_GRIPPER = """
 <robot name="two"><link name="base"/>{arm}
 <link name="a"><collision><origin xyz="1.5 0.009 0.05"/>{box}</collision></link>
