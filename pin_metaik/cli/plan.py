@@ -101,7 +101,11 @@ def plan(
             )
         )
     plans = mobile.plan_alternatives(problem, paths) if paths > 1 else [path]
-    motions = list(_motions(plans, robot, keep, trajectory, rng)) if trajectory and path.success else []
+    motions = (
+        list(_motions(plans, robot, keep, trajectory, rng))
+        if trajectory and path.success and not path.interrupted
+        else []
+    )
     best = min(range(len(motions)), key=lambda i: (not motions[i].success, motions[i].time), default=0)
     motion = motions[best] if motions else None
 
@@ -118,7 +122,7 @@ def plan(
     if out is not None:
         for file in _write(out, plans, best, found, motion, figures):
             Console(stderr=as_json).print(str(file), markup=False, highlight=False, soft_wrap=True)
-    if path.interrupted or (motion is not None and motion.interrupted):
+    if path.interrupted or any(each.interrupted for each in motions):
         raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if path.success and (motion is None or motion.success) else 1)
 
@@ -153,7 +157,7 @@ def _motions(
     for plan in plans:
         with _progress("trajectory") as tick, warnings.catch_warnings():
             warnings.simplefilter("ignore", OutsideTraining)  # the plan's notes say it
-            plan_one = partial(
+            search = partial(
                 mobile.plan_trajectory,
                 plan.path,
                 robot,
@@ -164,12 +168,15 @@ def _motions(
                 model=model,
                 callback=tick,
             )
-            yield kept(plan_one)
+            motion = kept(search)
+        yield motion
+        if motion.interrupted:
+            return
 
 
 @contextmanager
 def _progress(name: str) -> Iterator[Tick]:
-    """A bar on the terminal that follows a search; Ctrl-C is the search's own business: it keeps the best."""
+    """A bar on the terminal that follows a search."""
     columns = (TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(name, total=1.0)

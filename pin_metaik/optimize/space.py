@@ -14,7 +14,7 @@ from pin_metaik.optimize.settings import MANY, few
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, init=False)
 class Box:
     """The points ``lower <= x <= upper``, coordinate by coordinate.
 
@@ -32,8 +32,10 @@ class Box:
     upper: Array
     _rows: tuple[Array, Array] = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
-        lower, upper = _vector("lower", self.lower), _vector("upper", self.upper)
+    def __init__(self, lower: ArrayLike, upper: ArrayLike | None = None) -> None:
+        if upper is None:
+            raise InvalidBounds("the box of a search has lower and upper bounds; a solid is a mik.collision.Box(size)")
+        lower, upper = _vector("lower", lower), _vector("upper", upper)
         if lower.shape != upper.shape:
             raise InvalidBounds(f"lower has {lower.size} bounds and upper has {upper.size}: they must match")
         for index in np.flatnonzero(lower > upper):
