@@ -12,21 +12,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-VERSION = b"4"  # of what is kept: a new one when the way to work it out changes
+from pin_metaik.cache_folder import cache_folder
+
+VERSION = b"5"  # of what is kept: a new one when the way to work it out changes
 Arrays = dict[str, NDArray[np.float64]]
-
-
-def cache_folder() -> Path | None:
-    """Where it is kept: ``$PIN_METAIK_CACHE``, else ``pin_metaik`` in ``$XDG_CACHE_HOME`` or ``~/.cache``.
-
-    None for a user without a home, as in many containers: then nothing is kept.
-    """
-    try:
-        if folder := os.environ.get("PIN_METAIK_CACHE"):
-            return Path(folder).expanduser()
-        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "pin_metaik"
-    except RuntimeError:  # what pathlib raises where there is no home
-        return None
 
 
 def where_kept() -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from pin_metaik.collision.approach import Approach
 from pin_metaik.collision.body import Body, digest
 from pin_metaik.collision.cache import Arrays, kept, where_kept
-from pin_metaik.collision.layer import Layer
+from pin_metaik.collision.solids import Level, Placed, Solids
 from pin_metaik.collision.srdf import Pair, pair_of
 from pin_metaik.notice import notice
 
@@ -79,36 +80,40 @@ def _sample(
 ) -> Arrays:
     rng = np.random.default_rng(SEED)
     Q = random_configurations(model, rng, SAMPLES)
-    hulls = Layer.of(model, [(body, body.solid.hull, body.placement) for body in bodies], pieces)
-    distances = np.empty((SAMPLES, len(pieces)))
-    approaches = [Approach(model, hulls.scratch.data, bodies[i], bodies[j]) for i, j in pieces]
+    solids = Solids(model, bodies)
+    levels = [(solids.levels[i], solids.levels[j]) for i, j in pieces]
+    hulls, originals = [(a.hull, b.hull) for a, b in levels], [(a.fine, b.fine) for a, b in levels]
+    data = model.createData()
+    approaches = [Approach(model, data, bodies[i], bodies[j]) for i, j in pieces]
+    distances, by_link = np.empty((SAMPLES, len(pieces))), np.full((SAMPLES, count), np.inf)
     work = f"looking for links of {model.name} that can touch, once; {where_kept()}"
     with notice(work, SAMPLES + len(pieces)) as line:
         for k, q in enumerate(Q):
-            distances[k] = hulls.distances(q)
+            distances[k] = _distances(solids.place(q), hulls)
             line.step()
-        by_link = np.full((count, SAMPLES), np.inf)
-        np.minimum.at(by_link, owner, distances.T)
-        share, gap = (by_link <= CONTACT).mean(axis=1), np.maximum(by_link.min(axis=1), 0.0)
+        np.minimum.at(by_link.T, owner, distances.T)
+        share, gap = (by_link <= CONTACT).mean(axis=0), np.maximum(by_link.min(axis=0), 0.0)
         for k, approach in enumerate(approaches):
             if gap[owner[k]] > 0.0:  # no other piece of the two links touches
                 nearest = _nearest(approach, Q[np.argsort(distances[:, k])[:STARTS]], rng)
                 gap[owner[k]] = min(gap[owner[k]], nearest)
             line.step()
     meshes = np.zeros(count)
-    margins = np.full(len(pieces), CONTACT)
-    originals = Layer.of(model, [(body, body.solid.original, body.placement) for body in bodies], pieces, margins)
     for link in np.flatnonzero(share >= ALWAYS):
-        meshes[link] = _share(originals, np.flatnonzero(owner == link), Q[:ENOUGH])
+        meshes[link] = _share(solids, [originals[k] for k in np.flatnonzero(owner == link)], Q[:ENOUGH])
     return {"share": share, "meshes": meshes, "gap": gap}
 
 
-def _share(layer: Layer, pieces: NDArray[np.int64], Q: NDArray[np.float64]) -> float:
+def _distances(placed: Placed, pairs: Sequence[tuple[Level, Level]]) -> list[float]:
+    return [placed.distance(a, b) for a, b in pairs]
+
+
+def _share(solids: Solids, pieces: Sequence[tuple[Level, Level]], Q: NDArray[np.float64]) -> float:
     """Of the configurations Q (k, nq) in which any of the pieces touch; 0 as soon as it is certainly not ``ALWAYS``."""
     free = 0
     for q in Q:
-        layer.place(q)
-        free += not any(layer.touches(int(piece)) for piece in pieces)
+        placed = solids.place(q)
+        free += not any(placed.overlap(a, b, CONTACT) for a, b in pieces)
         if free > (1.0 - ALWAYS) * len(Q):
             return 0.0
     return 1.0 - free / len(Q)
