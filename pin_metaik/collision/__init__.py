@@ -1,5 +1,6 @@
 """Collisions: shapes, scenes, and the world that checks them through Pinocchio and coal."""
 
+from pin_metaik.collision.clouds import HeightField, Octree, PointCloud
 from pin_metaik.collision.contact import Contact, Distance
 from pin_metaik.collision.mesh import Mesh, MeshSize
 from pin_metaik.collision.obstacle import Obstacle
@@ -16,10 +17,13 @@ __all__ = [
     "Cylinder",
     "Distance",
     "HalfSpace",
+    "HeightField",
     "Mesh",
     "MeshSize",
     "Obstacle",
+    "Octree",
     "Plane",
+    "PointCloud",
     "Shape",
     "Sphere",
     "load_scene",

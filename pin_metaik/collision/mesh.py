@@ -99,13 +99,18 @@ class Mesh:
         """The shape as coal has it: a hull where the solid is convex, else its surface."""
         if self.convex:
             return self.hull
-        model = coal.BVHModelOBBRSS()
         assert self.triangles is not None
-        model.beginModel(len(self.triangles), len(self.vertices))
-        model.addVertices(self.vertices)
-        model.addTriangles(self.triangles)
-        model.endModel()
-        return model
+        return surface(self.vertices, self.triangles)
+
+
+def surface(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> Any:
+    """Vertices (k, 3) and triangles (m, 3) as a ``coal.BVHModelOBBRSS``."""
+    model = coal.BVHModelOBBRSS()
+    model.beginModel(len(triangles), len(vertices))
+    model.addVertices(vertices)
+    model.addTriangles(triangles)
+    model.endModel()
+    return model
 
 
 def _read(file: Path, scale: float) -> Mesh:

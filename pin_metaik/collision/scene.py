@@ -15,7 +15,8 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from pin_metaik.collision.mesh import Mesh
+from pin_metaik.collision.clouds import HeightField, Octree, PointCloud
+from pin_metaik.collision.mesh import Mesh, existing_file
 from pin_metaik.collision.numbers import three
 from pin_metaik.collision.obstacle import Obstacle
 from pin_metaik.collision.shapes import Box, Capsule, Cone, Cylinder, HalfSpace, Plane, Shape, Sphere
@@ -39,8 +40,33 @@ class Kind(NamedTuple):
 
 def _sizes(shape: type[Shape]) -> Kind:
     """A shape whose keys are its own fields."""
-    needed = tuple(field.name for field in fields(shape) if field.default is MISSING)
-    return Kind(shape, needed, tuple(field.name for field in fields(shape)))
+    needed = tuple(field.name for field in fields(shape) if field.init and field.default is MISSING)
+    return Kind(shape, needed, tuple(field.name for field in fields(shape) if field.init))
+
+
+def _cloud(shape: Callable[[Any, Any], Shape], size: str) -> Kind:
+    """A shape of points, in the scene itself or in a .npy file (k, 3)."""
+
+    def make(points: Any = None, file: Path | None = None, **sizes: Any) -> Shape:
+        if (points is None) == (file is None):
+            raise InvalidGeometry("its points are in 'points' or in a .npy 'file'")
+        return shape(points if file is None else read_points(file), sizes[size])
+
+    return Kind(make, (size,), ("points", "file", size))
+
+
+def read_points(path: str | Path) -> NDArray[np.float64]:
+    """The points (k, 3) in a .npy file.
+
+    Raises:
+        InvalidGeometry: If there is no such file, or it holds no array.
+    """
+    file = existing_file(path, "point cloud")
+    try:
+        points: NDArray[np.float64] = np.load(file, allow_pickle=False)
+    except (OSError, ValueError, EOFError) as error:
+        raise InvalidGeometry(f"{file} is not a .npy file of points: {error}") from None
+    return points
 
 
 KINDS: dict[str, Kind] = {
@@ -51,6 +77,9 @@ KINDS: dict[str, Kind] = {
     "cone": _sizes(Cone),
     "halfspace": _sizes(HalfSpace),
     "plane": _sizes(Plane),
+    "point_cloud": _cloud(PointCloud, "radius"),
+    "octree": _cloud(Octree, "resolution"),
+    "height_field": _sizes(HeightField),
     "mesh": Kind(lambda file, scale=1.0: Mesh.read(file, scale), ("file",), ("file", "scale")),
 }
 KEYS = ("name", "shape", "position", "rpy", "touching")
@@ -66,7 +95,8 @@ def load_scene(source: str | Path) -> tuple[Obstacle, ...]:
 
     Each ``[[obstacle]]`` has a ``name``, a ``shape`` with its sizes in m, a ``position`` in m, perhaps ``rpy`` in rad
     (Rz(yaw) Ry(pitch) Rx(roll)) and ``touching``, names that may touch it. A mesh has a ``file``, relative to the
-    scene's, and perhaps a ``scale``.
+    scene's, and perhaps a ``scale``; a ``point_cloud`` has ``points`` or a .npy ``file``, and a ``radius``; an
+    ``octree`` the same with a ``resolution``; a ``height_field`` ``size``, ``heights`` and ``base``.
 
     Raises:
         UnknownName: If no scene has that name, or a key is none that is read.

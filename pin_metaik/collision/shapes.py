@@ -10,6 +10,7 @@ import coal
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.collision.clouds import HeightField, Octree, PointCloud
 from pin_metaik.collision.mesh import Mesh
 from pin_metaik.collision.numbers import real, three
 from pin_metaik.errors import InvalidGeometry
@@ -164,7 +165,9 @@ class Plane(_Flat):
         return coal.Plane(*self._plane())
 
 
-Shape: TypeAlias = Box | Sphere | Cylinder | Capsule | Cone | HalfSpace | Plane | Mesh
+Shape: TypeAlias = (
+    Box | Sphere | Cylinder | Capsule | Cone | HalfSpace | Plane | Mesh | PointCloud | Octree | HeightField
+)
 
 
 LARGEST = 1e6
