@@ -151,6 +151,7 @@ class Limits:
         winds = self.winds & (upper - lower >= 2.0 * np.pi)
         return Limits(lower, upper, self.velocity, self.rotates, winds, self.names)
 
+    @checked_as(InvalidBounds)
     def bound(self, leader: str, line: tuple[float, float], follower: str, span: tuple[float, float]) -> Limits:
         """The same limits where a joint that follows one of these, at scale x + shift, keeps to a range of its own.
 
@@ -167,6 +168,8 @@ class Limits:
         low, high = _pair(follower, span)
         if not low <= high:
             raise InvalidBounds(f"joint {follower!r} has its lower limit {low} above its upper limit {high}")
+        if leader not in self.names:
+            raise InvalidBounds(f"{follower!r} follows {leader!r}, which is none of {', '.join(self.names)}")
         i = self.names.index(leader)
         ends = sorted(((low - shift) / scale, (high - shift) / scale)) if scale else [-np.inf, np.inf]
         least, most = max(ends[0], self.lower[i]), min(ends[1], self.upper[i])
