@@ -164,8 +164,12 @@ class Limits:
         Raises:
             InvalidBounds: If the range is crossed or NaN, or leaves the leader no room.
         """
-        scale, shift = line
+        if leader not in self.names:
+            raise InvalidBounds(f"{leader!r} is none of the joints of these limits: {', '.join(self.names)}")
+        scale, shift = _pair(follower, line)
         low, high = _pair(follower, span)
+        if not np.isfinite([scale, shift]).all():
+            raise InvalidBounds(f"scale and shift of joint {follower!r} are finite, got {line!r}")
         if not low <= high:
             raise InvalidBounds(f"joint {follower!r} has its lower limit {low} above its upper limit {high}")
         if leader not in self.names:
