@@ -172,8 +172,6 @@ class Limits:
             raise InvalidBounds(f"scale and shift of joint {follower!r} are finite, got {line!r}")
         if not low <= high:
             raise InvalidBounds(f"joint {follower!r} has its lower limit {low} above its upper limit {high}")
-        if leader not in self.names:
-            raise InvalidBounds(f"{follower!r} follows {leader!r}, which is none of {', '.join(self.names)}")
         i = self.names.index(leader)
         ends = sorted(((low - shift) / scale, (high - shift) / scale)) if scale else [-np.inf, np.inf]
         least, most = max(ends[0], self.lower[i]), min(ends[1], self.upper[i])
