@@ -13,6 +13,7 @@ from pin_metaik.collision.mesh import convex_hull
 from pin_metaik.collision.obstacle import Obstacle
 from pin_metaik.collision.world import CollisionWorld
 from pin_metaik.errors import MissingExtra
+from pin_metaik.kinematics.model import frame_id
 
 WOOD, HELD = np.array([0.72, 0.53, 0.35, 1.0]), np.array([0.2, 0.5, 0.3, 1.0])  # red, green, blue, opacity
 SHEET = 3.0  # m; how much of a plane is drawn
@@ -44,7 +45,7 @@ def _scene(world: CollisionWorld) -> pin.GeometryModel:
     for obstacle in world.obstacles:
         _draw(scene, obstacle, 0, obstacle.pose, WOOD)
     for held, name in world.grasped:
-        frame = world.model.frames[world.model.getFrameId(name)]
+        frame = world.model.frames[frame_id(world.model, name)]
         _draw(scene, held, int(frame.parentJoint), frame.placement * held.pose, HELD)
     return scene
 

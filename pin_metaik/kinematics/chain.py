@@ -15,6 +15,7 @@ from pin_metaik.errors import FixedFrame
 from pin_metaik.kinematics.atlas import LEAF, SEED, Atlas, chart
 from pin_metaik.kinematics.closed_form import closed_form
 from pin_metaik.kinematics.model import as_configuration, coordinates_of, entry_limits, frame_id, joint_id, limits_of
+from pin_metaik.kinematics.own_limits import with_own
 from pin_metaik.kinematics.paths import lay_paths, motion_of
 from pin_metaik.kinematics.placing import Placing, Scratch
 from pin_metaik.kinematics.reach import Reach, reach_of
@@ -107,7 +108,7 @@ class Chain:
         self.names = tuple(model.names[j] for j in drivers)
         self.coordinates = coordinates_of(model, drivers)
         mimicked = {motion.driver for motion in motions.values() if motion.scale != 1.0}
-        self.limits = limits_of(model, drivers, self.names, mimicked).replace(dict(limits or {}))
+        self.limits = with_own(limits_of(model, drivers, self.names, mimicked), limits or {})
         plain, entries = self.coordinates.plain, self.coordinates.plain_q
         self._least[entries], self._most[entries] = self.limits.lower[plain], self.limits.upper[plain]
         self.paths = lay_paths(model, self.frame_ids, {j: c for c, j in enumerate(drivers)}, motions, self.reference)
