@@ -20,10 +20,12 @@ import numpy as np
 import pinocchio as pin
 
 from pin_metaik.errors import InvalidModel
+from pin_metaik.robots.wording import NO_LIMIT
 
 SINGLE = ("revolute", "continuous", "prismatic")  # joints with one degree of freedom
 NO_ROOM = 1e-9  # rad or m; a range that is no wider is none
 RANK = "06d"
+PINOCCHIOS = ("universe", "root_joint")  # names that Pinocchio gives
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,9 @@ class Couplings:
         return {name for group in mixed for name in group if self.kinds[name] == "continuous"}
 
 
+NO_COUPLINGS = Couplings({}, (), {}, ())
+
+
 def read_couplings(robot: ET.Element, what: str) -> Couplings:
     """The mimic tags of a URDF's joints that move.
 
@@ -96,41 +101,33 @@ def read_couplings(robot: ET.Element, what: str) -> Couplings:
     return Couplings(kinds, tuple(followers), constants, tuple(f"{wrong}: it is free" for wrong in remarks.values()))
 
 
-def names_in_order(robot: ET.Element, couplings: Couplings) -> dict[str, str]:
-    """New names of all joints, by which siblings sort with leaders before followers; none if they do already."""
-    joints = {joint.get("name", ""): joint for joint in robot.iterfind("joint")}
-    above = {_link(joint, "child"): name for name, joint in joints.items()}
-    siblings = defaultdict(list)
-    for name, joint in joints.items():
-        siblings[_link(joint, "parent")].append(name)
+def make_ready(motion: ET.Element, couplings: Couplings) -> bool:
+    """Change a URDF's tree so that followers can follow: leaders come first, and both have the same kind of coordinate.
 
-    def limb(name: str) -> list[str]:
-        """The joints from the root to this one."""
-        way = [name]
-        while (upper := above.get(_link(joints[way[-1]], "parent"))) and upper not in way:
-            way.append(upper)
-        return way[::-1]
-
-    pairs = ((limb(coupling.leader), limb(coupling.follower)) for coupling in couplings.followers)
-    forks = (next(((a, b) for a, b in zip(*pair, strict=False) if a != b), None) for pair in pairs)
-    earlier = {fork for fork in forks if fork is not None}
-    orders = [_sorted(names, earlier) for names in siblings.values()]
-    if all(order == sorted(order) for order in orders):
-        return {}
-    return {name: f"{rank:{RANK}} {name}" for order in orders for rank, name in enumerate(order)}
+    Returns:
+        Whether joints got other names, by which siblings sort; ``with_own_names`` gives them back.
+    """
+    for joint in motion.iterfind("joint"):
+        for tag in joint.findall("mimic"):
+            joint.remove(tag)
+        if joint.get("name") in couplings.unlimited:
+            joint.set("type", "revolute")
+            limit = joint.find("limit")
+            limit = ET.SubElement(joint, "limit", effort=NO_LIMIT, velocity=NO_LIMIT) if limit is None else limit
+            limit.attrib.update(lower=f"-{NO_LIMIT}", upper=NO_LIMIT)
+    names = _names_in_order(motion, couplings) if couplings.followers else {}
+    for joint in motion.iterfind("joint"):
+        joint.set("name", names.get(joint.get("name", ""), joint.get("name", "")))
+    return bool(names)
 
 
-def with_names_of_old(model: pin.Model) -> None:
-    """Give joints that have a name of ``names_in_order`` their own again."""
+def with_own_names(model: pin.Model) -> None:
+    """Give joints that ``make_ready`` renamed their own names again."""
     cut = len(f"{0:{RANK}} ")
     for i, name in enumerate(model.names):
-        if name not in ("universe", "root_joint"):
-            model.names[i] = name[cut:]
+        model.names[i] = name if name in PINOCCHIOS else name[cut:]
     for frame in model.frames:
-        if frame.type in (pin.FrameType.JOINT, pin.FrameType.FIXED_JOINT) and frame.name not in (
-            "universe",
-            "root_joint",
-        ):
+        if frame.type in (pin.FrameType.JOINT, pin.FrameType.FIXED_JOINT) and frame.name not in PINOCCHIOS:
             frame.name = frame.name[cut:]
 
 
@@ -162,9 +159,9 @@ def coupled(model: pin.Model, couplings: Couplings) -> tuple[pin.Model, list[str
             )
             ends = sorted((end - offset) / multiplier for end in ranges[name])
             narrow = max(low, ends[0]), min(high, ends[1])
-            if narrow[1] - narrow[0] > NO_ROOM or high - low <= NO_ROOM:
+            if narrow[1] - narrow[0] > NO_ROOM:
                 low, high = narrow
-            else:
+            elif high - low > NO_ROOM:
                 remarks.append(
                     f"joint {name!r} is {multiplier:g} * {driver!r} + {offset:g}, "
                     f"and its limits {list(ranges[name])} leave that no room: they are not kept"
@@ -220,6 +217,30 @@ def _way(tags: Mapping[str, Coupling], name: str) -> list[str]:
 def _link(joint: ET.Element, end: str) -> str:
     element = joint.find(end)
     return "" if element is None else element.get("link", "")
+
+
+def _names_in_order(robot: ET.Element, couplings: Couplings) -> dict[str, str]:
+    """New names of all joints, by which siblings sort with leaders before followers; none if they do already."""
+    joints = {joint.get("name", ""): joint for joint in robot.iterfind("joint")}
+    above = {_link(joint, "child"): name for name, joint in joints.items()}
+    siblings = defaultdict(list)
+    for name, joint in joints.items():
+        siblings[_link(joint, "parent")].append(name)
+
+    def limb(name: str) -> list[str]:
+        """The joints from the root to this one."""
+        way = [name]
+        while (upper := above.get(_link(joints[way[-1]], "parent"))) and upper not in way:
+            way.append(upper)
+        return way[::-1]
+
+    pairs = ((limb(coupling.leader), limb(coupling.follower)) for coupling in couplings.followers)
+    forks = (next(((a, b) for a, b in zip(*pair, strict=False) if a != b), None) for pair in pairs)
+    earlier = {fork for fork in forks if fork is not None}
+    orders = [_sorted(names, earlier) for names in siblings.values()]
+    if all(order == sorted(order) for order in orders):
+        return {}
+    return {name: f"{rank:{RANK}} {name}" for order in orders for rank, name in enumerate(order)}
 
 
 def _sorted(names: list[str], earlier: set[tuple[str, str]]) -> list[str]:

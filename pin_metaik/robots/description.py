@@ -16,11 +16,11 @@ import pinocchio as pin
 
 from pin_metaik.errors import InvalidModel
 from pin_metaik.robots import plausible
-from pin_metaik.robots.couplings import coupled, names_in_order, read_couplings, with_names_of_old
+from pin_metaik.robots.couplings import NO_COUPLINGS, coupled, make_ready, read_couplings, with_own_names
 from pin_metaik.robots.prints import caught_prints, explain
 from pin_metaik.robots.spelling import misspelt
 from pin_metaik.robots.text import outermost, parsed
-from pin_metaik.robots.wording import Shapes, negative_sizes, wording_of_motion, wording_of_shapes
+from pin_metaik.robots.wording import Shapes, motion_of, negative_sizes, shapes_of
 
 Base = Literal["fixed", "free flyer", "planar"]
 ROOTS = {"free flyer": pin.JointModelFreeFlyer, "planar": pin.JointModelPlanar}
@@ -110,29 +110,27 @@ class Description:
 
     def _read_urdf(self) -> tuple[pin.Model, list[str]]:
         tree = self.tree()
-        couplings = read_couplings(tree, self.what) if self.mimic else None
-        names = names_in_order(tree, couplings) if couplings else {}
-        text, mended = wording_of_motion(tree, self.what, names, couplings.unlimited if couplings else ())
+        motion, mended = motion_of(tree, self.what)
+        couplings = read_couplings(motion, self.what) if self.mimic else NO_COUPLINGS
+        renamed = make_ready(motion, couplings)
         with caught_prints() as prints:
             try:
-                model = pin.buildModelFromXML(text, *self._root(), mimic=False)
+                free = pin.buildModelFromXML(ET.tostring(motion, encoding="unicode"), *self._root())
             except (ValueError, RuntimeError) as error:
                 raise InvalidModel(f"{self.what} is not a valid URDF: {prints() or explain(error)}") from None
-            printed = prints()
-        remarks = [*misspelt(tree), *mended, *([printed] if printed else []), *plausible.numbers(tree)]
-        if names:
-            with_names_of_old(model)
-        if couplings:
-            remarks += couplings.remarks
-            model, contradictions = coupled(model, couplings)
-            remarks += contradictions
+            printed = list(filter(None, [prints()]))
+        if renamed:
+            with_own_names(free)
+        model, contradictions = coupled(free, couplings)
+        remarks = [*misspelt(tree), *mended, *printed, *plausible.numbers(tree), *couplings.remarks, *contradictions]
         return model, remarks
 
     def _urdf_geometry(self, model: pin.Model, shapes: Shapes) -> pin.GeometryModel:
         tree = self.tree()
         if wrong := negative_sizes(tree, shapes):
             raise InvalidModel(f"the {shapes} geometry of {self.what} has a size below zero: {'; '.join(wrong)}")
-        text, counts = wording_of_shapes(tree, shapes)
+        shaped, counts = shapes_of(tree, shapes)
+        text = ET.tostring(shaped, encoding="unicode")
         folders = [str(folder) for folder in (self.source or Path("here")).absolute().parents]
         with caught_prints() as prints:
             try:
@@ -157,9 +155,9 @@ class Description:
                 model = pin.buildModelFromMJCF(path)
             except (ValueError, RuntimeError) as error:
                 raise InvalidModel(f"{self.what} is not MJCF that can be read: {prints() or explain(error)}") from None
-            printed = prints()
+            printed = list(filter(None, [prints()]))
         left = [f"{self.what} has <{name}>, which is not read" for name in _NOT_READ if f"<{name}" in self.text]
-        return model, [*left, *([printed] if printed else [])]
+        return model, [*left, *printed]
 
     def _mjcf_geometry(self, model: pin.Model, shapes: Shapes) -> pin.GeometryModel:
         with self._file() as path, caught_prints():

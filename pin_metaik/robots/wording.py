@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable
 from copy import deepcopy
 from math import inf, nan
 from typing import Literal
@@ -20,23 +20,15 @@ Shapes = Literal["collision", "visual"]
 
 VERSION = "1.1"  # the newest in which limits may be crossed, which matters only to who moves the joint
 NEWEST = "1.2"  # of URDF
-UNLIMITED = "1e308"  # Pinocchio's "no limit"
-_MOTION = ("parent", "child", "origin", "axis", "limit", "dynamics")  # what of a joint a model is made from
+NO_LIMIT = "1e308"  # Pinocchio's "no limit"
+_MOTION = ("parent", "child", "origin", "axis", "limit", "dynamics", "mimic")  # what of a joint a model is made from
 _NEVER_NEGATIVE = {"limit": ("effort", "velocity"), "dynamics": ("damping", "friction")}
 _ON_AN_AXIS = ("revolute", "continuous", "prismatic")
 _NO_SHAPE = ("origin", "geometry", "material", "color", "texture")
 
 
-def wording_of_motion(
-    robot: ET.Element, what: str, names: Mapping[str, str] | None = None, unlimited: Collection[str] = ()
-) -> tuple[str, list[str]]:
-    """URDF text of links, masses and joints, and what has to be said about it.
-
-    Args:
-        robot: The tree of a URDF.
-        what: The file, for messages.
-        names: New names of joints, which put siblings in another order.
-        unlimited: Continuous joints that become revolute ones without limits, so that others can follow them.
+def motion_of(robot: ET.Element, what: str) -> tuple[ET.Element, list[str]]:
+    """A tree of the links, masses and joints of a URDF's tree, and what has to be said about it.
 
     Raises:
         InvalidModel: If its version is one that nobody reads.
@@ -51,13 +43,12 @@ def wording_of_motion(
     for joint in robot.iterfind("joint"):
         copy = ET.SubElement(root, "joint", joint.attrib)
         copy.extend(deepcopy(child) for child in joint if child.tag in _MOTION)
-        remarks += _mended(copy, joint.get("name", "") in unlimited)
-        copy.attrib.update({"name": names[copy.attrib["name"]]} if names and "name" in copy.attrib else {})
-    return ET.tostring(root, encoding="unicode"), remarks
+        remarks += _mended(copy)
+    return root, remarks
 
 
-def wording_of_shapes(robot: ET.Element, shapes: Shapes) -> tuple[str, dict[str, int]]:
-    """URDF text of links and their shapes of one kind, and how many shapes each link has.
+def shapes_of(robot: ET.Element, shapes: Shapes) -> tuple[ET.Element, dict[str, int]]:
+    """A tree of the links and their shapes of one kind, and how many shapes each link has.
 
     Several shapes in one ``<geometry>`` come one by one: urdfdom would read the first.
     """
@@ -74,14 +65,14 @@ def wording_of_shapes(robot: ET.Element, shapes: Shapes) -> tuple[str, dict[str,
     for joint in robot.iterfind("joint"):
         copy = ET.SubElement(root, "joint", {**joint.attrib, "type": "fixed"})
         copy.extend(child for child in joint if child.tag in ("parent", "child"))
-    return ET.tostring(root, encoding="unicode"), counts
+    return root, counts
 
 
 def _robot(robot: ET.Element) -> ET.Element:
     return ET.Element("robot", {key: robot.attrib[key] for key in ("name",) if key in robot.attrib}, version=VERSION)
 
 
-def _mended(joint: ET.Element, unlimited: bool) -> Iterable[str]:
+def _mended(joint: ET.Element) -> Iterable[str]:
     """Take out of a joint what urdfdom refuses and kinematics does not need, and tell of it."""
     name, kind = joint.get("name", ""), joint.get("type", "")
     axis = joint.find("axis")
@@ -97,13 +88,8 @@ def _mended(joint: ET.Element, unlimited: bool) -> Iterable[str]:
                 yield f"joint {name!r} has {key} = {value}: taken as {part.get(key)}"
     for dynamics in joint.iterfind("dynamics"):
         dynamics.attrib.setdefault("damping", "0")
-    if unlimited:
-        joint.set("type", "revolute")
-        limit = joint.find("limit")
-        limit = ET.SubElement(joint, "limit") if limit is None else limit
-        limit.attrib.update(lower=f"-{UNLIMITED}", upper=UNLIMITED)
     for limit in joint.iterfind("limit"):
-        limit.attrib = {"effort": UNLIMITED, "velocity": UNLIMITED, **limit.attrib}
+        limit.attrib = {"effort": NO_LIMIT, "velocity": NO_LIMIT, **limit.attrib}
 
 
 def _singles(element: ET.Element) -> Iterable[ET.Element]:
