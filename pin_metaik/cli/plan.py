@@ -13,13 +13,17 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from pin_metaik.cli.codes import INTERRUPTED
+from pin_metaik.cli.versions import versions
 from pin_metaik.compare.report.write import need_figures
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize import ALGORITHMS, AskTell, Budget
+from pin_metaik.output import writable
 
 if TYPE_CHECKING:  # shapely is an extra, and none of the other commands should wait for it
     from pin_metaik.mobile import PathPlan, Scene, SynchroDrive, TrajectoryPlan
 
+UNITS = {"length": "that of the scene, m with a trajectory", "angle": "rad", "time": "s"}
 MARGIN = 0.1  # m, when a trajectory is wanted: curves need room inside the corners
 RANDOM = "random:"
 TRAJECTORIES = ("dp", "de", "ann")
@@ -61,11 +65,16 @@ def plan(
     figures: Annotated[bool, typer.Option(help="Draw figures into --out; needs the extra plots.")] = True,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Plan a path among obstacles. Exit code 0: planned, 1: what was found collides, 2: the call makes no sense."""
+    """Plan a path among obstacles. Ctrl-C keeps the best so far.
+
+    Exit code 0: planned, 1: what was found collides, 2: the call makes no sense, 130: interrupted.
+    """
     from pin_metaik import mobile
 
-    if out is not None and figures:
-        need_figures()
+    if out is not None:
+        writable(out, folder=True)
+        if figures:
+            need_figures()
     if trajectory is not None and trajectory not in TRAJECTORIES:
         raise InvalidSetting(f"no trajectory {trajectory!r}; known: {', '.join(TRAJECTORIES)}")
     if paths > 1 and method != "exact":
@@ -75,6 +84,7 @@ def plan(
     room = margin if margin is not None else MARGIN if trajectory else 0.0
     world = _scene(scene, start, goal, keep + room)
     problem = mobile.PathProblem.of(world, keep, room, join)  # type: ignore[arg-type]  # it checks the join itself
+    _warm_up()
     with _progress("path") as tick:
         path = mobile.plan_path(
             problem,
@@ -94,7 +104,7 @@ def plan(
     found = plans[best].as_dict()
     if len(plans) > 1:
         found["alternatives"] = [each.as_dict() for i, each in enumerate(plans) if i != best]
-    report: dict[str, Any] = {"path": found}
+    report: dict[str, Any] = {"versions": versions(), "units": UNITS, "path": found}
     if motion is not None:
         report["trajectory"] = {key: value for key, value in motion.as_dict().items() if key != "samples"}
     if as_json:
@@ -104,7 +114,17 @@ def plan(
     if out is not None:
         for file in _write(out, plans, best, found, motion, figures):
             Console(stderr=as_json).print(str(file), markup=False, highlight=False, soft_wrap=True)
+    if path.interrupted or (motion is not None and motion.interrupted):
+        raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if path.success and (motion is None or motion.success) else 1)
+
+
+def _warm_up() -> None:
+    """Plan round a box, so that what is compiled and imported once is not in the times shown."""
+    from pin_metaik import mobile
+
+    box = mobile.read_polygons([[(1.0, -1.0), (2.0, -1.0), (2.0, 1.0), (1.0, 1.0)]])
+    mobile.plan_path(mobile.Scene((0.0, 0.0), (3.0, 0.0), box))
 
 
 def _scene(source: str, start: Place, goal: Place, clearance: float) -> Scene:

@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
+import coal
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
+from pin_metaik.arguments import shown
+from pin_metaik.collision.extent import stand
 from pin_metaik.collision.simplify import Simplify, Solid, solid_of
-from pin_metaik.errors import InvalidGeometry
+from pin_metaik.errors import InvalidGeometry, InvalidSetting
+from pin_metaik.kinematics.model import model_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +37,21 @@ class Body:
     placement: pin.SE3
     solid: Solid
     part: bool = False
+
+    @cached_property
+    def at(self) -> Any:
+        """Its placement as coal takes it, ``coal.Transform3s``."""
+        return coal.Transform3s(self.placement.rotation, self.placement.translation)
+
+    @cached_property
+    def row(self) -> NDArray[np.float64]:
+        """(12,) its placement as numbers: rotation column by column, then translation."""
+        return np.concatenate([self.placement.rotation.ravel(order="F"), self.placement.translation])
+
+    @cached_property
+    def stood(self) -> NDArray[np.float64]:
+        """(16,) its box in the joint's frame, as ``boxes.near`` takes what stands."""
+        return stand(self.solid.original, self.solid.box, self.row)
 
 
 class Geometry(Protocol):
@@ -57,6 +78,30 @@ class Geometry(Protocol):
         ...
 
 
+@dataclass(frozen=True)
+class _Wrapped:
+    """Pinocchio's ``RobotWrapper``, and what it has no word for."""
+
+    name: str
+    model: pin.Model
+    collision_model: pin.GeometryModel
+    srdf: Path | None = None
+
+
+def geometry_of(robot: Geometry) -> Geometry:
+    """What a world needs of a robot, of Pinocchio's ``RobotWrapper`` as well.
+
+    Raises:
+        InvalidSetting: Neither a robot nor anything that has its geometry.
+    """
+    model = model_of(robot)
+    if isinstance(robot, pin.Model) or not hasattr(robot, "collision_model"):
+        raise InvalidSetting(f"a world needs a robot's geometry, e.g. mik.load_robot('panda'), got {shown(robot)}")
+    if hasattr(robot, "srdf") and hasattr(robot, "name"):
+        return robot
+    return _Wrapped(model.name, model, robot.collision_model)
+
+
 def robot_bodies(robot: Geometry, simplify: Simplify) -> tuple[Body, ...]:
     """The pieces of a robot's collision geometry.
 
@@ -80,10 +125,12 @@ def robot_bodies(robot: Geometry, simplify: Simplify) -> tuple[Body, ...]:
 
 
 def digest(model: pin.Model, bodies: tuple[Body, ...]) -> bytes:
-    """What decides which bodies of a robot touch: its joints, limits and hulls."""
+    """What decides which bodies of a robot touch: its joints, limits, hulls and meshes."""
     content = hashlib.sha256(model.saveToString().encode())
     for body in bodies:
         content.update(f"{body.link} {body.joint}".encode() + body.placement.homogeneous.tobytes())
-        hull = body.solid.hull
+        hull, original = body.solid.hull, body.solid.original
         content.update(np.array(hull.points()).tobytes() if hasattr(hull, "points") else hull.saveToString().encode())
+        if isinstance(original, coal.BVHModelBase):
+            content.update(np.array(original.vertices()).tobytes())
     return content.digest()

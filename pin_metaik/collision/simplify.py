@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal, TypeAlias
 
 import coal
@@ -16,6 +17,8 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from pin_metaik.collision.cache import Arrays, kept
+from pin_metaik.collision.extent import box_of
+from pin_metaik.collision.interior import Interior
 from pin_metaik.collision.mesh import convex_hull, flat
 
 Simplify: TypeAlias = Literal["none", "convex", "capsule"]
@@ -40,6 +43,16 @@ class Solid:
     hull: Any
     coarse: Any
     offset: pin.SE3
+
+    @cached_property
+    def box(self) -> NDArray[np.float64]:
+        """(7,) centre, half of the edges and radius of the ball of the box around it, in its frame, m."""
+        return box_of(self.hull)
+
+    @cached_property
+    def interior(self) -> Interior:
+        """What the original, if it is a mesh, has inside."""
+        return Interior.of(self.original)
 
 
 def solid_of(geometry: Any, simplify: Simplify, *, robot: bool = True) -> Solid:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from pin_metaik.collision.body import Body, digest
 from pin_metaik.collision.cache import Arrays, kept
-from pin_metaik.collision.layer import Layer
+from pin_metaik.collision.solids import Level, Placed, Solids
 from pin_metaik.collision.srdf import Pair, pair_of
 
 SEED = 20_261_125
@@ -76,56 +77,58 @@ def _sample(
 ) -> Arrays:
     rng = np.random.default_rng(SEED)
     Q = random_configurations(model, rng, SAMPLES)
-    hulls = Layer.of(model, [(body, body.solid.hull, body.placement) for body in bodies], pieces)
-    distances = np.array([hulls.distances(q) for q in Q])  # (SAMPLES, pieces)
+    solids = Solids(model, bodies)
+    levels = [(solids.levels[i], solids.levels[j]) for i, j in pieces]
+    hulls, originals = [(a.hull, b.hull) for a, b in levels], [(a.fine, b.fine) for a, b in levels]
+    distances = np.array([_distances(solids.place(q), hulls) for q in Q]).reshape(SAMPLES, -1)  # (SAMPLES, pieces)
     by_link = np.full((SAMPLES, count), np.inf)
     np.minimum.at(by_link.T, owner, distances.T)
     share, gap = (by_link <= CONTACT).mean(axis=0), np.maximum(by_link.min(axis=0), 0.0)
     meshes = np.zeros(count)
-    margins = np.full(len(pieces), CONTACT)
-    originals = Layer.of(model, [(body, body.solid.original, body.placement) for body in bodies], pieces, margins)
     for link in np.flatnonzero(share >= ALWAYS):
-        meshes[link] = _share(originals, np.flatnonzero(owner == link), Q[:ENOUGH])
+        meshes[link] = _share(solids, [originals[k] for k in np.flatnonzero(owner == link)], Q[:ENOUGH])
     for piece in np.flatnonzero(gap[owner] > 0.0):
         starts = Q[np.argsort(distances[:, piece])[:STARTS]]
-        gap[owner[piece]] = min(gap[owner[piece]], _nearest(hulls, pieces, bodies, int(piece), starts, rng))
+        i, j = pieces[piece]
+        joints = bodies[i].joint, bodies[j].joint
+        gap[owner[piece]] = min(gap[owner[piece]], _nearest(solids, hulls[piece], joints, starts, rng))
     return {"share": share, "meshes": meshes, "gap": gap}
 
 
-def _share(layer: Layer, pieces: NDArray[np.int64], Q: NDArray[np.float64]) -> float:
+def _distances(placed: Placed, pairs: Sequence[tuple[Level, Level]]) -> list[float]:
+    return [placed.distance(a, b) for a, b in pairs]
+
+
+def _share(solids: Solids, pieces: Sequence[tuple[Level, Level]], Q: NDArray[np.float64]) -> float:
     """Of the configurations Q (k, nq) in which any of the pieces touch; 0 as soon as it is certainly not ``ALWAYS``."""
     free = 0
     for q in Q:
-        layer.place(q)
-        free += not any(layer.touches(int(piece)) for piece in pieces)
+        placed = solids.place(q)
+        free += not any(placed.overlap(a, b, CONTACT) for a, b in pieces)
         if free > (1.0 - ALWAYS) * len(Q):
             return 0.0
     return 1.0 - free / len(Q)
 
 
 def _nearest(
-    layer: Layer,
-    pieces: list[tuple[int, int]],
-    bodies: tuple[Body, ...],
-    piece: int,
+    solids: Solids,
+    piece: tuple[Level, Level],
+    joints: tuple[int, int],
     starts: NDArray[np.float64],
     rng: np.random.Generator,
 ) -> float:
     """The least distance that random steps downhill lead to, of those joints that move the two against each other."""
-    model = layer.model
-    i, j = pieces[piece]
-    moving = set(model.supports[bodies[i].joint]) ^ set(model.supports[bodies[j].joint])
+    model = solids.model
+    moving = set(model.supports[joints[0]]) ^ set(model.supports[joints[1]])
     freedoms = [model.joints[joint].idx_v for joint in sorted(moving) if model.joints[joint].nv == 1]
     least = np.inf
     for q in starts:
-        layer.place(q)
-        here, length = layer.distance(piece), FIRST_STEP
+        here, length = solids.place(q).distance(*piece), FIRST_STEP
         for _ in range(STEPS):
             step = np.zeros(model.nv)
             step[freedoms] = length * rng.standard_normal(len(freedoms))
             tried = np.clip(pin.integrate(model, q, step), model.lowerPositionLimit, model.upperPositionLimit)
-            layer.place(tried)
-            there = layer.distance(piece)
+            there = solids.place(tried).distance(*piece)
             if there < here:
                 q, here, length = tried, there, 1.5 * length
             else:

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.record import CaseRecord, Record
 from pin_metaik.compare.statistics import wilson
 from pin_metaik.compare.trial import Trial
@@ -82,6 +83,7 @@ class Results:
         silent = {trial.method for trial in self.trials if trial.evaluations is None and trial.error is None}
         return [method for method in self.methods if method not in silent]
 
+    @checked
     def of(self, *, robot: str | None = None, case: str | None = None, method: str | None = None) -> list[Trial]:
         """The rows of a robot, a case, a method."""
         if method is None:
@@ -91,6 +93,7 @@ class Results:
         cases = list(self.cases) if case is None else [case]
         return [t for r in robots for c in cases for t in self._groups.get((r, c, method), ())]
 
+    @checked
     def spent(self, case: str, method: str) -> Array:
         """Evaluations to solution of each row, ``inf`` of unsolved ones."""
         rows = self.of(case=case, method=method)
@@ -98,6 +101,7 @@ class Results:
             [t.evaluations if t.solved and t.evaluations is not None else np.inf for t in rows], dtype=float
         )
 
+    @checked
     def costs(self, case: str, robot: str | None = None) -> Array:
         """Costs (b, k) of the methods that can be ranked, on every task of a case that all of them tried.
 
@@ -131,6 +135,7 @@ def cost(trial: Trial) -> float:
     return PENALTY * trial.allowed
 
 
+@checked
 def summarise(trials: Sequence[Trial]) -> Summary:
     """What became of these trials."""
     solved = [trial for trial in trials if trial.solved]

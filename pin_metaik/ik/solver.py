@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
+from itertools import islice
 from time import perf_counter
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked, instance
 from pin_metaik.errors import InvalidBudget, InvalidSetting, UnknownName
 from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.nullspace import slide
@@ -32,6 +35,7 @@ CHOICE, CHOICE_SHARE = 64, 0.5  # solutions to choose from at most, and the shar
 RESERVE = 0.05  # of the budget, to settle down at the nearest pose when none is near enough
 
 
+@checked
 @dataclass(frozen=True)
 class IKSolver:
     """How to search: where starts come from, what refines them, and how much may be spent.
@@ -90,23 +94,24 @@ class IKSolver:
         ``first`` is what the fast lane came to, if it has tried the first starts already.
         """
         began = perf_counter()
+        instance(IKProblem, problem=problem)
+        instance(Refinement | None, first=first)
+        if q0 is not None:
+            problem = problem.at(q0)
         chain = problem.chain
         base = chain.reference if q0 is None else chain.configuration(q0)
         x0 = chain.x(base)
-        ledger = Ledger(problem, self.budget, began, x0)
+        ledger = Ledger(problem.whole if problem.loose else problem, self.budget, began, x0)
         if first is not None:
             ledger.add(first)
-        try:
-            if self.select != "first":
-                self._choose(problem, x0, base, rng, ledger)
-            if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
-                self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
-            if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
-                self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
-            if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None:
-                ledger.add(self._refiner.settle(problem, ledger.x, ledger.left()))
-        except KeyboardInterrupt:
-            ledger.interrupted = True
+        if self.select != "first":
+            self._choose(problem, x0, base, rng, ledger)
+        if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
+            self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
+        if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
+            self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
+        if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None:
+            ledger.add(self._refiner.settle(ledger.problem, ledger.x, ledger.left()))
         q = base.copy()
         chain.coordinates.write(ledger.x, q)
         verdict = problem.verdict(q)
@@ -134,7 +139,7 @@ class IKSolver:
         """
         measure = SELECT[self.select]
         budget = Budget(evaluations=max(1, ledger.left(CHOICE_SHARE)), seconds=self.budget.seconds)
-        found, _, spent = collect(problem, x0, rng, limit=CHOICE, apart=1e-2, budget=budget)
+        problem, found, _, spent = collect(problem, x0, rng, limit=CHOICE, apart=1e-2, budget=budget)
         ledger.spent += spent
         if problem.world is not None:
             found = found[[problem.accepts(q) for q in problem.chain.q(found, base)]]
@@ -161,16 +166,42 @@ class IKSolver:
     def _restart(
         self, problem: IKProblem, refiner: Refiner, x0: NDArray[np.float64], rng: Rng, ledger: Ledger, tried: int
     ) -> None:
-        """Refine from x0 (n,), then from random starts; the automatic solver also from an atlas of the chain."""
+        """Refine from x0 (n,), then from random starts; ``tried`` says that the first batch of them has been.
+
+        The middle of the tolerances is tried first. Where they are loose, all further batches aim at all that is
+        accepted; where they are not, a last one does.
+        """
         share = 1.0 - RESERVE if self._seeder is None else RESTART_SHARE
-        refine = refiner.refine
-        if self._seeder is not None and isinstance(refiner, DLS) and not tried:
-            refine = refiner.refine_anywhere
-        if tried and (ledger.over(share) or problem.gap > 0.0):
+        batches = partial(start_batches, problem.chain, x0, rng, self.starts)
+        if not problem.loose:
+            self._refine(problem, refiner, batches(tried), bool(tried), ledger, share)
+            if self.starts is None and not ledger.met:  # starts that were counted are not counted twice
+                self._refine(problem.whole, refiner, islice(batches(), 1), False, ledger, share + RESERVE)
             return
-        for starts in start_batches(problem.chain, x0, rng, self.starts, tried):
+        if not tried:
+            self._refine(problem, refiner, islice(batches(), 1), False, ledger, share)
+        if not ledger.met:
+            self._refine(problem.whole, refiner, batches(), False, ledger, share)
+
+    def _refine(
+        self,
+        problem: IKProblem,
+        refiner: Refiner,
+        batches: Iterator[NDArray[np.float64]],
+        begun: bool,
+        ledger: Ledger,
+        share: float,
+    ) -> None:
+        """Refine from one batch of starts after the other; the automatic solver begins with an atlas of the chain."""
+        refine = refiner.refine
+        if self._seeder is not None and isinstance(refiner, DLS) and not begun:
+            refine = refiner.refine_anywhere
+        if ledger.over(share) or (ledger.spent + begun and problem.gap > 0.0):
+            return
+        for starts in batches:
+            before = ledger.spent
             ledger.add(refine(problem, starts, ledger.left(share)))
-            if ledger.over(share) or problem.gap > 0.0:
+            if ledger.over(share) or problem.gap > 0.0 or ledger.spent == before:
                 return
             refine = refiner.refine
 
@@ -188,12 +219,12 @@ class IKSolver:
         while True:
             budget = ledger.slice(share)
             found = minimize(
-                problem.costs, problem.box, seeder, budget, generator, seeds=seeds, trace=self.trace, keep=ELITE
+                ledger.problem.costs, problem.box, seeder, budget, generator, seeds=seeds, trace=self.trace, keep=ELITE
             )
             ledger.add_search(found)
             if self._refiner is None:
                 return
-            ledger.add(self._refiner.refine(problem, found.elite, ledger.left(1.0 - RESERVE)))
+            ledger.add(self._refiner.refine(ledger.problem, found.elite, ledger.left(1.0 - RESERVE)))
             if ledger.over(1.0 - RESERVE) or problem.gap > 0.0:
                 return
             seeds = None

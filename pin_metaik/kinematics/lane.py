@@ -30,6 +30,19 @@ POSITION = np.array([[0, 0], [0, 1], [0, 2]])  # the rows that count where orien
 
 
 @inline
+def misshape(task: Floats) -> float:
+    """By how much (relative) the rotation of a target may stretch a vector: |R R' - I|."""
+    square = 0.0
+    for i in range(3):
+        for j in range(3):
+            dot = -1.0 if i == j else 0.0
+            for k in range(3):
+                dot += task[3 * i + k] * task[3 * j + k]
+            square += dot * dot
+    return math.sqrt(square)
+
+
+@inline
 def out_of_reach(task: Floats, reach: Floats) -> bool:
     """Whether every pose in the tolerances is proved to be farther away, or nearer, than the links can span."""
     square = lever = 0.0
@@ -41,6 +54,9 @@ def out_of_reach(task: Floats, reach: Floats) -> bool:
         lever += reach[3 + i] * reach[3 + i]
     distance = math.sqrt(square)
     allowed = ROUNDING + task[24] + (math.sqrt(lever) * task[25] if lever > 0.0 else 0.0)
+    if reach[6] - 1.01 * allowed <= distance <= reach[7] + 1.01 * allowed:
+        return False
+    allowed += math.sqrt(lever) * misshape(task)
     return bool(distance > reach[7] + 1.01 * allowed or distance < reach[6] - 1.01 * allowed)
 
 

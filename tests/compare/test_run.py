@@ -125,7 +125,9 @@ def test_methods_that_know_nothing_of_collisions_try_again_within_their_budget(t
 
 
 def test_ctrl_c_keeps_what_is_done(tmp_path: Path) -> None:
-    outcome = compare(Suite(("ur5",), ("random",), (Interrupted(),), targets=6), tmp_path)
+    with pytest.raises(KeyboardInterrupt) as press:
+        compare(Suite(("ur5",), ("random",), (Interrupted(),), targets=6), tmp_path)
+    outcome = press.value.result
     assert outcome.partial and outcome.done == len(read_rows(tmp_path)) == 2
     assert "interrupted: the same command goes on" in str(outcome)
 
@@ -138,7 +140,7 @@ def test_the_parquet_file_has_the_same_rows(whole: Path) -> None:
 
 def test_a_suite_and_its_environment_are_written_down(whole: Path) -> None:
     record = read_record(whole)
-    assert record == Record.of(SMALL) and record.suite() == SMALL
+    assert record == Record.of(SMALL) and record.suite(whole) == SMALL
     (session,) = read_environment(whole)
     assert {"pin-metaik", "pin", "numpy", "numba", "scipy", "joblib"} <= session["packages"].keys()
     assert session["processor"] and session["cores"] >= 1 and session["date"].startswith("20")

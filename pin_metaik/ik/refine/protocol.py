@@ -7,6 +7,8 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import array
+from pin_metaik.errors import InvalidConfiguration
 from pin_metaik.ik.problem import IKProblem
 
 
@@ -16,6 +18,18 @@ class Refinement(NamedTuple):
     x: NDArray[np.float64]
     met: bool
     evaluations: int
+
+
+def given_starts(problem: IKProblem, starts: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Starts (s, n) that somebody gave, at least one.
+
+    Raises:
+        InvalidConfiguration: They are none.
+    """
+    given = array("starts", starts, "s", problem.chain.n, error=InvalidConfiguration)
+    if not len(given):
+        raise InvalidConfiguration("a refiner needs at least one start, got none")
+    return given
 
 
 @runtime_checkable

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.iterate import Patience, Step, iterate
@@ -63,6 +64,7 @@ class QP:
         if self.posture is not None and not (isinstance(self.posture, str) and self.posture == "middle"):
             object.__setattr__(self, "posture", _coordinates(self.posture))
 
+    @checked
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent.
 
