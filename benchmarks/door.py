@@ -1,6 +1,6 @@
 """Odd arguments at every public door: what comes back is a result or a ``MetaIKError``, never anything else.
 
-    python benchmarks/door.py [--calls 20000] [--seed 0] [--out PAGE]
+    python benchmarks/door.py [--calls 20000] [--drawn 2000] [--seed 0] [--only NAME] [--out PAGE]
 
 Every function, constructor and method that the public modules offer is called as ``door_calls.py`` has it, with one
 argument, or several, replaced by something odd: another type, another shape, nothing, NaN, a number far too large.
@@ -15,21 +15,23 @@ import enum
 import inspect
 import os
 import pickle
+import platform
 import resource
 import signal
 import tempfile
 import time
 import traceback
 import warnings
-from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+import hypothesis
 import numpy as np
 import pinocchio as pin
-from door_calls import CALLS, MODULES, OWNERS, PATIENT, REGISTRIES, chain, scene
+from door_calls import CALLS, MODULES, OWNERS, PATIENT, POSE, REGISTRIES, chain, scene
 from hypothesis import strategies as st
 
 import pin_metaik as mik
@@ -169,6 +171,19 @@ def doors() -> dict[str, Door]:
     return found
 
 
+def parameters(door: Door) -> set[str]:
+    """Names of all that a door takes."""
+    function = door.function
+    if function is None:
+        place, kind, attribute = door.name.split(".")
+        function = getattr(getattr(MODULES[place], kind), attribute)
+    several = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+    taken = {
+        name for name, parameter in inspect.signature(function).parameters.items() if parameter.kind not in several
+    }
+    return taken - {"self"}
+
+
 def _of(name: str, thing: Any) -> Iterator[Door]:
     """A function; or of a class its constructor and methods. What is made for a user to read needs no constructor."""
     if not inspect.isclass(thing):
@@ -188,6 +203,10 @@ def _of(name: str, thing: Any) -> Iterator[Door]:
             yield Door(f"{name}.{attribute}", name, attribute, None)
 
 
+Call = tuple[Door, dict[str, Any]]
+"""A door, and what is put in the place of some of its arguments."""
+
+
 @dataclass(frozen=True)
 class Fault:
     """A call that raised something else, or did not come back."""
@@ -201,16 +220,35 @@ class Fault:
         return f"{self.door}({self.changed}): {self.error.splitlines()[0]}"
 
 
-def knock(door: Door, odd: dict[str, Any]) -> Fault | None:
-    """Call a door with some arguments replaced; None for a result or a ``MetaIKError``."""
-    changed = ", ".join(f"{name}={_shown(value)}" for name, value in odd.items())
+@dataclass(frozen=True)
+class Knock:
+    """What came of a call.
+
+    Attributes:
+        seconds: Time taken, s.
+        refused: Whether it was a ``MetaIKError``.
+        fault: What else it raised, if it did.
+    """
+
+    seconds: float
+    refused: bool
+    fault: Fault | None = None
+
+
+def knock(door: Door, odd: dict[str, Any]) -> Knock:
+    """Call a door with some arguments replaced."""
+    began = time.perf_counter()
     error = _raised(door, odd)
-    if isinstance(error, Hangs):
-        error = _raised(door, odd)  # the first time it may have compiled
+    seconds = time.perf_counter() - began
     if error is None or isinstance(error, MetaIKError):
-        return None
+        return Knock(seconds, error is not None)
     said = f"hangs for {LATE:g} s" if isinstance(error, Hangs) else f"{type(error).__name__}: {error}"
-    return Fault(door.name, changed, said, "".join(traceback.format_exception(error)))
+    return Knock(seconds, False, Fault(door.name, changed(odd), said, "".join(traceback.format_exception(error))))
+
+
+def changed(odd: dict[str, Any]) -> str:
+    """The arguments that were replaced."""
+    return ", ".join(f"{name}={_shown(value)}" for name, value in odd.items())
 
 
 def _raised(door: Door, odd: dict[str, Any]) -> BaseException | None:
@@ -230,6 +268,15 @@ def applicable(parameter: str, value: object) -> bool:
     return not (parameter in PATIENT and big)
 
 
+def draw(data: st.DataObject) -> Call:
+    """A door, and odd values for one to three of its arguments, as hypothesis draws them."""
+    door = data.draw(st.sampled_from([door for door in doors().values() if CALLS[door.name]()]), label="door")
+    names = sorted(CALLS[door.name]())
+    chosen = data.draw(st.lists(st.sampled_from(names), min_size=1, max_size=3, unique=True), label="arguments")
+    odd = {name: data.draw(drawn(), label=name) for name in chosen}
+    return door, {name: value for name, value in odd.items() if applicable(name, value)}
+
+
 @contextlib.contextmanager
 def alarm(seconds: float) -> Iterator[None]:
     """Raise ``Hangs`` in what takes longer."""
@@ -246,7 +293,7 @@ def alarm(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
-def listed() -> Iterator[tuple[Door, dict[str, Any]]]:
+def listed() -> Iterator[Call]:
     """Every argument of every door replaced by every odd value of the list, one at a time."""
     for door in doors().values():
         for parameter in CALLS[door.name]():
@@ -264,6 +311,16 @@ def _shown(value: object) -> str:
     return text if len(text) < 80 else text[:77] + "..."
 
 
+def warm_up() -> None:
+    """Make every good call once, and what takes other compiled loops: nothing is compiled while the alarm is set."""
+    for name, door in doors().items():
+        door.call(dict(CALLS[name]()))
+    for target in ([0.3, 0.3, 0.4], mik.Target(POSE, orientation_tolerance=[0.1, 0.1, 0.1])):
+        for solve in (mik.solve_ik, mik.solve_ik_all):
+            solve(chain(), target)
+        mik.solve_ik_batch(chain(), [target])
+
+
 @contextlib.contextmanager
 def elsewhere() -> Iterator[None]:
     """In a folder of its own, with bounded memory, and nothing printed."""
@@ -279,8 +336,9 @@ def elsewhere() -> Iterator[None]:
             os.chdir(before)
 
 
-def sweep(todo: list[tuple[Door, dict[str, Any]]], report: Callable[[Fault], None]) -> None:
+def sweep(todo: list[Call]) -> dict[int, Knock]:
     """Knock at all of them in processes of their own: what kills one is a fault, and the next goes on behind it."""
+    done: dict[int, Knock] = {}
     at = 0
     while at < len(todo):
         reader, writer = os.pipe()
@@ -289,50 +347,93 @@ def sweep(todo: list[tuple[Door, dict[str, Any]]], report: Callable[[Fault], Non
             os.close(reader)
             with os.fdopen(writer, "wb") as out:
                 for i in range(at, len(todo)):
-                    pickle.dump((i, None), out)
+                    pickle.dump((i, knock(*todo[i])), out)
                     out.flush()
-                    fault = knock(*todo[i])
-                    if fault is not None:
-                        pickle.dump((i, fault), out)
-                        out.flush()
             os._exit(0)
         os.close(writer)
         with os.fdopen(reader, "rb") as back, contextlib.suppress(EOFError):
             while True:
-                at, fault = pickle.load(back)
-                if fault is not None:
-                    report(fault)
+                i, outcome = pickle.load(back)
+                done[i], at = outcome, i + 1
         _, status = os.waitpid(child, 0)
-        if status:
+        if at < len(todo):
             door, odd = todo[at]
-            changed = ", ".join(f"{name}={_shown(value)}" for name, value in odd.items())
-            report(Fault(door.name, changed, f"the process ends with status {status}", ""))
-        at += 1
+            done[at] = Knock(0.0, False, Fault(door.name, changed(odd), f"the process ends with status {status}", ""))
+            at += 1
+    return done
+
+
+def drawn_calls(count: int, seed: int) -> list[Call]:
+    """Calls with several arguments replaced, as hypothesis draws them."""
+    found: list[Call] = []
+
+    @hypothesis.seed(seed)
+    @hypothesis.settings(
+        max_examples=count, deadline=None, database=None, suppress_health_check=[*hypothesis.HealthCheck]
+    )
+    @hypothesis.given(st.data())
+    def collect(data: st.DataObject) -> None:
+        found.append(draw(data))
+
+    if count:
+        collect()
+    return found
+
+
+def page(todo: list[Call], done: dict[int, Knock], command: str) -> Iterator[str]:
+    """The page on a sweep, line by line."""
+    names = ("pin", "numpy", "hypothesis")
+    versions = ", ".join(f"{name} {version(name)}" for name in names)
+    machine = f"{os.cpu_count()}-core {platform.machine()}, shared, Python {platform.python_version()}, {versions}"
+    faults = [knock.fault for knock in done.values() if knock.fault is not None]
+    hangs = sum("hangs" in fault.error for fault in faults)
+    seconds = sorted(knock.seconds for knock in done.values())
+    middle = seconds[len(seconds) // 2]
+    yield "# Odd arguments at every public door"
+    yield f"`{command}`, {datetime.date.today()}, {machine}."
+    yield (
+        f"{len(todo):,} calls of {len(doors())} public functions, constructors and methods with odd arguments: "
+        f"**{len(faults)} exceptions outside the family of `MetaIKError`, {hangs} of them hangs** (longer than "
+        f"{LATE:g} s). The longest call took {1e3 * seconds[-1]:.0f} ms, the median {1e3 * middle:.2f} ms."
+    )
+    table = ["| module | doors | calls | results | refused | faults |", "|---|---|---|---|---|---|"]
+    by_module: dict[str, list[int]] = {}
+    for i, (door, _) in enumerate(todo):
+        by_module.setdefault(door.name.partition(".")[0], []).append(i)
+    for module, calls in by_module.items():
+        refused = sum(done[i].refused for i in calls)
+        wrong = sum(done[i].fault is not None for i in calls)
+        names_ = {todo[i][0].name for i in calls}
+        cells = [len(names_), len(calls), len(calls) - refused - wrong, refused, wrong]
+        table.append(f"| {module} | {' | '.join(f'{n:,}' for n in cells)} |")
+    yield "\n".join(table)
+    if faults:
+        yield "\n".join(f"- `{fault}`" for fault in faults)
 
 
 def main() -> None:
     """Knock, count, and write the page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--calls", type=int, default=20_000)
+    parser.add_argument("--calls", type=int, default=20_000, help="of the list: one argument replaced")
+    parser.add_argument("--drawn", type=int, default=2_000, help="drawn by hypothesis: one to three replaced")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--only", default="")
+    parser.add_argument("--only", default="", help="doors whose name holds this")
     parser.add_argument("--out", type=Path)
     options = parser.parse_args()
+    out = None if options.out is None else options.out.absolute()
     rng = np.random.default_rng(options.seed)
     with elsewhere():
-        for door in doors().values():  # compiles what there is to compile, and finds calls that are not good
-            if options.only in door.name:
-                door.call(dict(CALLS[door.name]()))
-        todo = [entry for entry in listed() if options.only in entry[0].name]
+        warm_up()
+        todo = [*listed()]
         if options.calls < len(todo):
             todo = [todo[i] for i in np.sort(rng.choice(len(todo), options.calls, replace=False))]
-        faults, began = list[Fault](), time.perf_counter()
-        sweep(todo, faults.append)
-        seconds = time.perf_counter() - began
-    for fault in faults:
-        print(fault)
-    print(len(todo), "calls", len(faults), "faults", f"{seconds:.1f} s")
-    print(Counter(f.door for f in faults).most_common(400))
+        todo = [call for call in (*todo, *drawn_calls(options.drawn, options.seed)) if options.only in call[0].name]
+        done = sweep(todo)
+    command = f"python benchmarks/door.py --calls {options.calls} --drawn {options.drawn} --seed {options.seed}"
+    text = "\n\n".join(page(todo, done, command)) + "\n"
+    print(text)
+    if out is not None:
+        out.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -78,10 +78,16 @@ def table() -> robots.DHTable:
 
 
 def world() -> mik.CollisionWorld:
-    made = mik.CollisionWorld(robots.Robot("arm", *planar(), Path("arm.urdf")))
+    made = mik.CollisionWorld(two_links())
     made.add(collision.Obstacle("wall", collision.Box((0.1, 1.0, 1.0)), (1.8, 0.0, 0.0)))
     made.attach("tool", collision.Sphere(0.05), "tip", (0.0, 0.0, 0.1))
     return made
+
+
+@cache
+def two_links() -> mik.Robot:
+    model, frame, urdf = planar()
+    return mik.Robot("arm", model, frame, robots.Description(urdf, Path("arm.urdf")))
 
 
 @cache
@@ -296,6 +302,7 @@ OWNERS: dict[str, Callable[[], Any]] = {
     "collision.Sphere": lambda: collision.Sphere(0.1),
     "learn.Network": lambda: learn.Network(2, (2,)),
     "learn.Regressor": regressor,
+    "robots.Description": lambda: robots.Description(planar()[2], Path("arm.urdf")),
     "robots.DHTable": table,
     "refine.LM": refine.LM,
     "refine.QP": refine.QP,
@@ -312,6 +319,7 @@ OWNERS: dict[str, Callable[[], Any]] = {
     "mobile.PaperFitness": mobile.PaperFitness,
     "mobile.FreeSpace": lambda: planning().space,
     "mobile.LearnedTurn": turn,
+    "mobile.OccupancyGrid": lambda: mobile.grid_of(np.eye(3)),
     "mobile.Path": path,
     "mobile.PathPlan": lambda: mobile.plan_path(planning()),
     "mobile.PathProblem": planning,
@@ -381,7 +389,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.Chain.placements": lambda: {"q": np.array(X6)},
     "mik.Chain.poses": lambda: {"X": [X6]},
     "mik.CollisionWorld": lambda: {
-        "robot": robots.Robot("arm", *planar(), Path("arm.urdf")),
+        "robot": two_links(),
         "obstacles": [],
         "margin": 0.0,
         "srdf": None,
@@ -594,6 +602,9 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     },
     "robots.DHTable.frames": lambda: {"q": [0.1, 0.2]},
     "robots.DHTable.fk": lambda: {"q": [0.1, 0.2]},
+    "robots.Description": lambda: {"urdf": planar()[2], "source": "arm.urdf", "base": "fixed", "mimic": True},
+    "robots.Description.model": dict,
+    "robots.description_of": lambda: {"model": planar()[0]},
     "robots.Placement": lambda: {"xyz": (0.0, 0.0, 0.0), "rpy": (0.0, 0.0, 0.0)},
     "robots.read_table": lambda: {"path": written("arm.toml", DH), "parameters": {"l": 2.0}},
     "robots.to_urdf": lambda: {"table": table()},
@@ -645,10 +656,14 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "stewart.Fitness.__call__": lambda: {
         "X": fitness().variables.point(mechanism().geometry, mechanism().limits)[None]
     },
-    "stewart.Fitness.cost": lambda: {"x": point()},
+    "stewart.Fitness.cost": lambda: {"x": point(), "fine": False},
     "stewart.Fitness.missing": lambda: {"dimensions": dimensions()},
     "stewart.Fitness.build": lambda: {"dimensions": dimensions()},
-    "stewart.Fitness.workspace": lambda: {"geometry": mechanism().geometry, "limits": mechanism().limits},
+    "stewart.Fitness.workspace": lambda: {
+        "geometry": mechanism().geometry,
+        "limits": mechanism().limits,
+        "fine": False,
+    },
     "stewart.Fitness.score": lambda: {"workspace": workspace()},
     "stewart.Geometry": lambda: {
         "base_radius": 0.2,
@@ -788,6 +803,8 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     },
     "mobile.PaperFitness.on": lambda: {"space": planning().space, "start": (0.0, 0.0), "goal": (5.0, 4.0)},
     "mobile.FreeSpace.of": lambda: {"scene": scene(), "clearance": 0.1, "join": "round"},
+    "mobile.FreeSpace.connects": lambda: {"start": (0.0, 0.0), "goal": (5.0, 4.0)},
+    "mobile.FreeSpace.nearly_connects": lambda: {"start": (0.0, 0.0), "goal": (5.0, 4.0)},
     "mobile.FreeSpace.holds": lambda: {"path": path().points},
     "mobile.FreeSpace.distance": lambda: {"path": path().points},
     "mobile.FreeSpace.check": lambda: {"role": "start", "point": (0.0, 0.0)},
@@ -800,6 +817,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "resolution": 0.5,
         "origin": (0.0, 0.0, 0.0),
     },
+    "mobile.OccupancyGrid.without_specks": lambda: {"cells": 2},
     "mobile.Path": lambda: {"points": [[0.0, 0.0], [1.0, 1.0]]},
     "mobile.Path.straightened": lambda: {"slack": 0.1},
     "mobile.Path.write": lambda: {"file": "path.csv"},
@@ -844,6 +862,8 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mobile.Trajectory.as_dict": lambda: {"dt": 0.5},
     "mobile.TrajectoryPlan.as_dict": lambda: {"dt": 0.5},
     "mobile.Visibility": lambda: {"space": planning().space},
+    "mobile.Visibility.nodes": lambda: {"start": (0.0, 0.0), "goal": (5.0, 4.0)},
+    "mobile.Visibility.inside": lambda: {"a": [[0.0, 0.0]], "b": [[1.0, 1.0], [5.0, 4.0]]},
     "mobile.Visibility.between": lambda: {"start": (0.0, 0.0), "goal": (5.0, 4.0)},
     "mobile.configurations": lambda: {"samples": motion().trajectory.sample(0.5)},
     "mobile.velocities": lambda: {"samples": motion().trajectory.sample(0.5)},
@@ -857,7 +877,8 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mobile.grid_of": lambda: {
         "values": [[0.0, 1.0], [0.0, 0.0]],
         "threshold": 0.5,
-        "unknown_blocks": True,
+        "unknown": "free",
+        "unknown_blocks": None,
         "resolution": 0.5,
         "origin": (0.0, 0.0, 0.0),
     },
@@ -871,7 +892,15 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "rng": 0,
         "callback": None,
     },
-    "mobile.load_scene": lambda: {"source": "ten_obstacles", "start": None, "goal": None},
+    "mobile.load_scene": lambda: {
+        "source": saved_grid(),
+        "start": (0.1, 1.2),
+        "goal": (1.2, 0.1),
+        "unknown": "free",
+        "resolution": 0.5,
+        "threshold": 0.5,
+        "specks": 1,
+    },
     "mobile.load_vehicle": lambda: {"source": "nomad200"},
     "mobile.mobile_robot": lambda: {"vehicle": mobile.NOMAD_200, "height": 0.8},
     "mobile.plan_alternatives": lambda: {"problem": planning(), "count": 2},
@@ -907,7 +936,14 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "start": (0.5, 0.5),
         "goal": (9.5, 9.5),
     },
-    "mobile.read_grid": lambda: {"path": saved_grid(), "unknown_blocks": True},
+    "mobile.read_grid": lambda: {
+        "path": saved_grid(),
+        "unknown": "free",
+        "unknown_blocks": None,
+        "threshold": 0.5,
+        "resolution": 0.5,
+    },
+    "mobile.read_obstacles": lambda: {"source": [SQUARE]},
     "mobile.read_polygons": lambda: {"source": [SQUARE]},
     "mobile.scene_names": dict,
     "mobile.shortest_path": lambda: {
@@ -933,6 +969,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "judge": compare.CASES["random"].judge,
         "success": "Reached.",
     },
+    "compare.Case.lacks": lambda: {"robot": ur5(), "rng": rng()},
     "compare.Case.task": lambda: {"chain": chain(), "world": None, "rng": rng()},
     "compare.Replay.lines": dict,
     "compare.Results.of": lambda: {"robot": "ur5", "case": "random", "method": "lm"},
@@ -949,7 +986,8 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "budget": 50,
         "rng": 0,
     },
-    "compare.Suite.units": lambda: {"done": frozenset()},
+    "compare.Suite.absent": dict,
+    "compare.Suite.units": lambda: {"done": frozenset(), "absent": ()},
     "compare.Task.at": lambda: {"chain": chain(), "X": np.array([X6]), "start": None},
     "compare.Trial.row": dict,
     "compare.Trial.of": lambda: {"row": trial().row()},

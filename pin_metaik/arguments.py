@@ -136,6 +136,11 @@ def array(
     Raises:
         MetaIKError: Of the class ``error``: not numbers, not finite, or of another shape.
     """
+    if type(value) is np.ndarray and value.dtype.char == "d" and value.flags.carray:  # what loops hand on
+        have = value.shape
+        some = type(shape[0]) is str and have[1 - len(shape) :] == shape[1:] and (shape[0] == "..." or value.ndim == 2)
+        if (have == shape or some) and (not finite or math.isfinite(np.add.reduce(value, axis=None))):
+            return value
     try:
         numbers = np.asarray(value, dtype=float, order="C")
     except (TypeError, ValueError, OverflowError):
@@ -236,9 +241,12 @@ def _nothing(value: Any) -> None:
 
 
 def _whole(value: Any) -> int:
-    if isinstance(value, (bool, np.bool_)) or not hasattr(value, "__index__") or np.ndim(value):
+    if isinstance(value, (bool, np.bool_)):
         raise _Unlike
-    return operator.index(value)
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise _Unlike from None
 
 
 def _number(value: Any) -> float:
@@ -353,8 +361,10 @@ def _mapping(key: Read, entry: Read) -> Read:
 
 
 def _array(kind: Any) -> Read:
+    char = np.dtype(kind).char
+
     def read(value: Any) -> Any:
-        if isinstance(value, np.ndarray) and value.dtype == kind:
+        if isinstance(value, np.ndarray) and value.dtype.char == char:
             return value
         try:
             numbers = np.asarray(value)
@@ -370,8 +380,10 @@ def _array(kind: Any) -> Read:
 
 
 def _instance(kind: Any) -> Read:
+    collects = kind.__module__ == "collections.abc"  # a text is one thing, though it holds letters
+
     def read(value: Any) -> Any:
-        if not isinstance(value, kind):
+        if not isinstance(value, kind) or (collects and isinstance(value, (str, bytes))):
             raise _Unlike
         return value
 
@@ -413,4 +425,4 @@ def _words(hint: Any) -> str:
         return NAMES[kind]
     making = MAKING.get(kind.__name__)
     article = "an" if kind.__name__[0] in "AEIOU" else "a"
-    return f"{article} {kind.__name__}{f', e.g. {making},' if making else ''}"
+    return f"{article} {kind.__name__}{f' (e.g. {making})' if making else ''}"

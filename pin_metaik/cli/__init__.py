@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import errno
-from typing import Annotated, Any
+import sys
+from typing import Annotated, Any, NoReturn
 
 import typer
 from rich.console import Console
@@ -17,31 +17,14 @@ from pin_metaik.errors import MetaIKError
 
 
 class Commands(TyperGroup):
-    """The one place where what a command raises becomes a line and an exit code; what is left is a bug."""
+    """The commands, with the exit code for Ctrl-C that shells know."""
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command; see ``errors`` for what makes no sense, the system's for files, and Ctrl-C."""
+        """Run the command that was named."""
         try:
             return super().invoke(ctx)
-        except MetaIKError as error:
-            raise _refused(str(error)) from None
-        except OSError as error:
-            if error.errno == errno.EPIPE:  # whoever read the output has gone, which is nobody's mistake
-                raise
-            raise _refused(_of_system(error)) from None
         except KeyboardInterrupt:
             raise typer.Exit(INTERRUPTED) from None
-
-
-def _refused(why: str) -> typer.Exit:
-    Console(stderr=True).print(f"pin-metaik: {why}", style="red", markup=False, highlight=False, soft_wrap=True)
-    return typer.Exit(NONSENSE)
-
-
-def _of_system(error: OSError) -> str:
-    """An error of the system, with the file it is about."""
-    reason = error.strerror or str(error) or type(error).__name__
-    return f"{error.filename}: {reason}" if error.filename else reason
 
 
 app = typer.Typer(
@@ -80,5 +63,16 @@ def main(
 
 
 def run() -> None:
-    """Entry point of the ``pin-metaik`` command."""
-    app()
+    """Entry point of the ``pin-metaik`` command: what makes no sense becomes a line; what is left is a bug."""
+    try:
+        app()
+    except MetaIKError as error:
+        _refuse(str(error))
+    except OSError as error:  # of a file, mostly: full, gone, or not ours
+        reason = error.strerror or str(error) or type(error).__name__
+        _refuse(f"{error.filename}: {reason}" if error.filename else reason)
+
+
+def _refuse(why: str) -> NoReturn:
+    Console(stderr=True).print(f"pin-metaik: {why}", style="red", markup=False, highlight=False, soft_wrap=True)
+    sys.exit(NONSENSE)

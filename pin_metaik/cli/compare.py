@@ -67,7 +67,8 @@ def compare(
 
 def report(folder: Annotated[Path, typer.Argument(help="Folder of a comparison, finished or not.")]) -> None:
     """Write the report on a comparison: one HTML page, and Markdown with tables and figures beside it."""
-    page, markdown, *others = write_report(folder)
+    with Console(stderr=True).status(f"writing the report on {folder} ..."):
+        page, markdown, *others = write_report(folder)
     print(page)
     print(markdown, f"and {len(others)} tables and figures")
 

@@ -6,6 +6,7 @@ import json
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,6 +18,7 @@ from pin_metaik.cli.codes import INTERRUPTED
 from pin_metaik.cli.versions import versions
 from pin_metaik.compare.report.write import need_figures
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.interrupts import kept
 from pin_metaik.optimize import ALGORITHMS, AskTell, Budget
 from pin_metaik.output import writable
 
@@ -86,18 +88,24 @@ def plan(
     problem = mobile.PathProblem.of(world, keep, room, join)  # type: ignore[arg-type]  # it checks the join itself
     _warm_up()
     with _progress("path") as tick:
-        path = mobile.plan_path(
-            problem,
-            method,
-            fitness=fitness,
-            via=via,
-            budget=Budget(evaluations=evaluations),
-            rng=rng,
-            seeded=seeded,
-            callback=tick,
+        path = kept(
+            lambda: mobile.plan_path(
+                problem,
+                method,
+                fitness=fitness,
+                via=via,
+                budget=Budget(evaluations=evaluations),
+                rng=rng,
+                seeded=seeded,
+                callback=tick,
+            )
         )
     plans = mobile.plan_alternatives(problem, paths) if paths > 1 else [path]
-    motions = list(_motions(plans, robot, keep, trajectory, rng)) if trajectory and path.success else []
+    motions = (
+        list(_motions(plans, robot, keep, trajectory, rng))
+        if trajectory and path.success and not path.interrupted
+        else []
+    )
     best = min(range(len(motions)), key=lambda i: (not motions[i].success, motions[i].time), default=0)
     motion = motions[best] if motions else None
 
@@ -114,7 +122,7 @@ def plan(
     if out is not None:
         for file in _write(out, plans, best, found, motion, figures):
             Console(stderr=as_json).print(str(file), markup=False, highlight=False, soft_wrap=True)
-    if path.interrupted or (motion is not None and motion.interrupted):
+    if path.interrupted or any(each.interrupted for each in motions):
         raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if path.success and (motion is None or motion.success) else 1)
 
@@ -149,7 +157,8 @@ def _motions(
     for plan in plans:
         with _progress("trajectory") as tick, warnings.catch_warnings():
             warnings.simplefilter("ignore", OutsideTraining)  # the plan's notes say it
-            yield mobile.plan_trajectory(
+            search = partial(
+                mobile.plan_trajectory,
                 plan.path,
                 robot,
                 plan.problem.scene.obstacles,
@@ -159,11 +168,15 @@ def _motions(
                 model=model,
                 callback=tick,
             )
+            motion = kept(search)
+        yield motion
+        if motion.interrupted:
+            return
 
 
 @contextmanager
 def _progress(name: str) -> Iterator[Tick]:
-    """A bar on the terminal that follows a search; Ctrl-C is the search's own business: it keeps the best."""
+    """A bar on the terminal that follows a search."""
     columns = (TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(name, total=1.0)

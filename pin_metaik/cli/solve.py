@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 
 from pin_metaik.cli.many import split
-from pin_metaik.cli.start import configuration
+from pin_metaik.cli.start import configuration, turns
 from pin_metaik.cli.versions import versions
 from pin_metaik.collision import CollisionWorld, load_scene, scene_names
 from pin_metaik.errors import InvalidSetting, InvalidTarget
@@ -173,9 +173,10 @@ def _shown(chain: Chain, x: NDArray[np.float64], in_degrees: bool) -> list[float
 
 
 def _angles(chain: Chain, result: IKResult, in_degrees: bool) -> list[float]:
-    """The entries of q; in degrees the chain's angles (the cos and sin of a continuous joint stay as they are)."""
-    q = result.q.copy()
+    """The entries of q; in degrees what is an angle (the cos and sin of a continuous joint stay as they are)."""
+    q = result.q.tolist()
     if in_degrees:
-        at = chain.coordinates
-        q[at.plain_q] = np.array(_shown(chain, result.x, True))[at.plain]
+        for joint in list(chain.model.joints)[1:]:
+            if joint.nq == 1 and turns(joint):
+                q[joint.idx_q] = degrees(q[joint.idx_q])
     return [float(v) for v in q]

@@ -38,13 +38,18 @@ def configuration(
     return q
 
 
+def turns(joint: pin.JointModel) -> bool:
+    """Whether the coordinate of a joint that has one is an angle."""
+    return "P" not in joint.shortname().removeprefix("JointModel")  # PX, PrismaticUnaligned, ...
+
+
 def _set(model: pin.Model, q: NDArray[np.float64], name: str, value: float, in_degrees: bool) -> None:
-    known = [joint for joint, kind in zip(model.names, model.joints, strict=True) if kind.nq in (1, 2) and kind.nv == 1]
+    kinds = list(zip(model.names, model.joints, strict=True))[1:]  # the first is the world
+    known = [joint for joint, kind in kinds if kind.nq in (1, 2) and kind.nv == 1]
     if name not in known:
         raise UnknownName("joint with one coordinate", name, known)
     joint = model.joints[model.getJointId(name)]
-    turns = "P" not in joint.shortname().removeprefix("JointModel")
-    angle = radians(value) if in_degrees and turns else value
+    angle = radians(value) if in_degrees and turns(joint) else value
     if joint.nq == 2:
         q[joint.idx_q : joint.idx_q + 2] = cos(angle), sin(angle)
     else:

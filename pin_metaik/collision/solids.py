@@ -6,6 +6,7 @@ a check nothing until something comes near.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from threading import local
@@ -118,15 +119,16 @@ class Solids:
         return geometry
 
     @cached_property
-    def levels(self) -> list[Levels]:
-        """The levels of every body."""
-        poses = list(range(len(self.moving)))
-        coarse = [self._shifted.get(number, number) for number in poses]
-        first = len(self.moving) + len(self._shifted)
-        stand = list(range(first, first + len(self.standing)))
-        bodies = (*self.moving, *self.standing)
-        rows = zip(bodies, poses + stand, coarse + stand, strict=True)
-        return [Levels.of(body, pose, coarse_pose) for body, pose, coarse_pose in rows]
+    def levels(self) -> Mapping[int, Levels]:
+        """The levels of every body, by its number; made when it is first near another one."""
+        return _Made(self._levels_of)
+
+    def _levels_of(self, number: int) -> Levels:
+        count = len(self.moving)
+        if number < count:
+            return Levels.of(self.moving[number], number, self._shifted.get(number, number))
+        pose = number + len(self._shifted)
+        return Levels.of(self.standing[number - count], pose, pose)
 
     @cached_property
     def boxes(self) -> NDArray[np.float64]:
@@ -254,6 +256,18 @@ class Placed:
             self.poses[pose] if pose < self.moving else self.solids.standing[pose - self.moving].row
         )
         return row
+
+
+class _Made(dict[int, Levels]):
+    """What is made of a number when it is first asked for."""
+
+    def __init__(self, make: Callable[[int], Levels]) -> None:
+        super().__init__()
+        self._make = make
+
+    def __missing__(self, number: int) -> Levels:
+        made = self[number] = self._make(number)
+        return made
 
 
 def _poses(placements: Any) -> NDArray[np.float64]:

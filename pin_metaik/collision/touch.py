@@ -1,4 +1,4 @@
-"""Which links of a robot ever touch: found by sampling, then by going downhill in distance where sampling saw a gap."""
+"""Which links of a robot ever touch: found by sampling, then by going downhill in distance where samples keep apart."""
 
 from __future__ import annotations
 
@@ -9,17 +9,20 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from pin_metaik.collision.approach import Approach
 from pin_metaik.collision.body import Body, digest
-from pin_metaik.collision.cache import Arrays, kept
+from pin_metaik.collision.cache import Arrays, kept, where_kept
 from pin_metaik.collision.solids import Level, Placed, Solids
 from pin_metaik.collision.srdf import Pair, pair_of
+from pin_metaik.notice import notice
 
 SEED = 20_261_125
 SAMPLES = 500
 ALWAYS = 0.95  # of the samples: links that touch so often are made so
 CONTACT = 1e-6  # m; what is nearer touches, up to rounding
 ENOUGH = 100  # samples of the meshes, for links whose hulls always touch
-STARTS, STEPS, FIRST_STEP = 4, 50, 0.5  # of the descents in distance, the step in rad or m
+STARTS = 4  # of the descents in distance, where samples came nearest
+MORE_STARTS, CLOSE = 12, 0.2  # at random, for what then comes closer than this, m
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,7 @@ class Touch:
     Attributes:
         share: Of random configurations in which their hulls touch.
         meshes: The same of the original geometry; only looked at where the hulls nearly always touch, else 0.
-        gap: Least distance of their hulls found, m; 0 when they touch.
+        gap: Least distance of their hulls inside the limits found, m; 0 when they touch.
     """
 
     share: float
@@ -80,18 +83,23 @@ def _sample(
     solids = Solids(model, bodies)
     levels = [(solids.levels[i], solids.levels[j]) for i, j in pieces]
     hulls, originals = [(a.hull, b.hull) for a, b in levels], [(a.fine, b.fine) for a, b in levels]
-    distances = np.array([_distances(solids.place(q), hulls) for q in Q]).reshape(SAMPLES, -1)  # (SAMPLES, pieces)
-    by_link = np.full((SAMPLES, count), np.inf)
-    np.minimum.at(by_link.T, owner, distances.T)
-    share, gap = (by_link <= CONTACT).mean(axis=0), np.maximum(by_link.min(axis=0), 0.0)
+    approaches = [Approach(model, model.createData(), bodies[i], bodies[j]) for i, j in pieces]
+    distances, by_link = np.empty((SAMPLES, len(pieces))), np.full((SAMPLES, count), np.inf)
+    work = f"looking for links of {model.name} that can touch, once; {where_kept()}"
+    with notice(work, SAMPLES + len(pieces)) as line:
+        for k, q in enumerate(Q):
+            distances[k] = _distances(solids.place(q), hulls)
+            line.step()
+        np.minimum.at(by_link.T, owner, distances.T)
+        share, gap = (by_link <= CONTACT).mean(axis=0), np.maximum(by_link.min(axis=0), 0.0)
+        for k, approach in enumerate(approaches):
+            if gap[owner[k]] > 0.0:  # no other piece of the two links touches
+                nearest = _nearest(approach, Q[np.argsort(distances[:, k])[:STARTS]], rng)
+                gap[owner[k]] = min(gap[owner[k]], nearest)
+            line.step()
     meshes = np.zeros(count)
     for link in np.flatnonzero(share >= ALWAYS):
         meshes[link] = _share(solids, [originals[k] for k in np.flatnonzero(owner == link)], Q[:ENOUGH])
-    for piece in np.flatnonzero(gap[owner] > 0.0):
-        starts = Q[np.argsort(distances[:, piece])[:STARTS]]
-        i, j = pieces[piece]
-        joints = bodies[i].joint, bodies[j].joint
-        gap[owner[piece]] = min(gap[owner[piece]], _nearest(solids, hulls[piece], joints, starts, rng))
     return {"share": share, "meshes": meshes, "gap": gap}
 
 
@@ -110,30 +118,16 @@ def _share(solids: Solids, pieces: Sequence[tuple[Level, Level]], Q: NDArray[np.
     return 1.0 - free / len(Q)
 
 
-def _nearest(
-    solids: Solids,
-    piece: tuple[Level, Level],
-    joints: tuple[int, int],
-    starts: NDArray[np.float64],
-    rng: np.random.Generator,
-) -> float:
-    """The least distance that random steps downhill lead to, of those joints that move the two against each other."""
-    model = solids.model
-    moving = set(model.supports[joints[0]]) ^ set(model.supports[joints[1]])
-    freedoms = [model.joints[joint].idx_v for joint in sorted(moving) if model.joints[joint].nv == 1]
+def _nearest(approach: Approach, starts: NDArray[np.float64], rng: np.random.Generator) -> float:
+    """The least distance (m) that descents lead to, from starts (k, nq) and, if that is little, from random ones.
+
+    Where a joint of several freedoms moves the two against each other, of which samples say nothing, it is 0.
+    """
+    if approach.several:
+        return 0.0
     least = np.inf
-    for q in starts:
-        here, length = solids.place(q).distance(*piece), FIRST_STEP
-        for _ in range(STEPS):
-            step = np.zeros(model.nv)
-            step[freedoms] = length * rng.standard_normal(len(freedoms))
-            tried = np.clip(pin.integrate(model, q, step), model.lowerPositionLimit, model.upperPositionLimit)
-            there = solids.place(tried).distance(*piece)
-            if there < here:
-                q, here, length = tried, there, 1.5 * length
-            else:
-                length *= 0.8
-            if here <= 0.0:
-                return 0.0
-        least = min(least, here)
+    for number, q in enumerate((*starts, *random_configurations(approach.model, rng, MORE_STARTS))):
+        if least <= 0.0 or (least > CLOSE and number >= len(starts)):
+            break
+        least = min(least, max(approach.descend(q)[0], 0.0))
     return float(least)

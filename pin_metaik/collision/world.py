@@ -32,6 +32,12 @@ from pin_metaik.output import writable
 class CollisionWorld:
     """Collisions of a robot with itself, with obstacles, and of what it has grasped with both.
 
+    Bodies collide when they are no farther apart than the margin, to a micrometre, or one is inside the other. The
+    geometry as it was given decides. A mesh is solid where it is closed: every edge of a part of it, triangles that
+    share corners, belongs to an even number of triangles. A part that is not closed is a sheet, and collides where its
+    surface does; a closed part within another one is a hollow. A robot that stands on something touches it, and does
+    not collide.
+
     Changing it (add, move, remove, attach, detach, allow, check) is not for several threads at once; asking it is.
 
     Attributes:
@@ -61,8 +67,10 @@ class CollisionWorld:
             robot: A robot with collision geometry: a ``Robot``, or any object with ``name``, ``model``,
                 ``collision_model`` and ``srdf`` (None or a path); or Pinocchio's ``RobotWrapper``.
             obstacles: What stands in the world; more can be added later.
-            margin: Distance at or below which two bodies collide, m. Links that are mostly nearer to each other are
-                built so, and only kept from touching.
+            margin: Distance at or below which two bodies collide, m. It is not kept between: links that mostly are
+                nearer to each other, as they are built so (they must only not touch); pairs that ``disabled`` names,
+                which are not checked at all; and the robot's base and what stands, as neither can come nearer (they
+                must only not overlap).
             srdf: A file with the pairs of links not to check; default: the robot's own, if it has one; ``False``: none.
                 Neighbours, links that always touch and links that never do are found out either way.
             simplify: ``"convex"`` hulls or ``"capsule"``s are checked before the original geometry, or ``"none"``.

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
 from pin_metaik.compare.record import CaseRecord, Record
-from pin_metaik.compare.statistics import wilson
+from pin_metaik.compare.statistics import Pair, compare_all, wilson
 from pin_metaik.compare.trial import Trial
 
 Array = NDArray[np.float64]
@@ -108,6 +108,17 @@ class Results:
         A trial costs its evaluations, at least 1, if it solved the task, otherwise ten times what was allowed; several
         seeds are taken together by the geometric mean.
         """
+        if (case, robot) not in self._costs:
+            self._costs[case, robot] = self._table(case, robot)
+        return self._costs[case, robot]
+
+    def pairs(self, case: str) -> list[Pair]:
+        """Every pair of methods that can be ranked, tested on a case."""
+        if case not in self._pairs:
+            self._pairs[case] = compare_all(self.counted, self.costs(case))
+        return self._pairs[case]
+
+    def _table(self, case: str, robot: str | None) -> Array:
         table: dict[tuple[str, int], dict[str, list[float]]] = {}
         for method in self.counted:
             for trial in self.of(robot=robot, case=case, method=method):
@@ -118,6 +129,14 @@ class Results:
             if len(row) == len(self.counted) and len({len(costs) for costs in row.values()}) == 1
         ]
         return np.array(whole).reshape(-1, len(self.counted))
+
+    @cached_property
+    def _costs(self) -> dict[tuple[str, str | None], Array]:
+        return {}
+
+    @cached_property
+    def _pairs(self) -> dict[str, list[Pair]]:
+        return {}
 
     @cached_property
     def _groups(self) -> dict[tuple[str, str, str], list[Trial]]:

@@ -26,6 +26,7 @@ from pin_metaik.compare.trial import Trial
 from pin_metaik.compare.unit import Unit
 from pin_metaik.errors import InvalidSetting, MissingExtra
 from pin_metaik.interrupts import Interrupted
+from pin_metaik.optimize.settings import one_of
 from pin_metaik.output import writable
 
 Backend: TypeAlias = Literal["loky", "dask"]
@@ -107,6 +108,7 @@ def compare(
     need_parquet()
     if jobs == 0 or abs(jobs) > MOST_JOBS:
         raise InvalidSetting(f"jobs is a number of processes, 1 to {MOST_JOBS:,}, or -1: one a core; got {jobs}")
+    one_of("backend", backend, Backend)
     writable(folder, folder=True)
     need_joblib()
     began = perf_counter()

@@ -66,11 +66,10 @@ def _hopeless(problem: IKProblem, world: CollisionWorld, q: NDArray[np.float64])
     none of them moves against it, to within the tolerances.
     """
     checker, chain = world.checker, problem.chain
-    if checker.fixed:
+    if checker.fixed or chain.limits.rigid:
         return True
     model = chain.model
-    movers = {*chain.coordinates.joints.tolist(), *(int(j) for j in model.mimicking_joints)}
-    moved_by = [movers.intersection(supports) for supports in model.supports]
+    moved_by = [chain.movers.intersection(supports) for supports in model.supports]
     slacks = {0: 0.0}  # of a joint that is held like this one, m
     for frame, target in zip(chain.frame_ids, problem.targets, strict=True):
         slack = sum(target.allowance) * LEVER

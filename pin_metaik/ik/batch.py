@@ -142,7 +142,7 @@ def solve_ik_batch(
         if result.contacts:
             batch.contacts[i] = result.contacts
 
-    settings = solver.lane if array is not None and len(chain.frames) == 1 else None
+    settings = solver.lane if array is not None and chain.has_lane else None
     workers = min(workers or os.cpu_count() or 1, max(k, 1))
     left: Iterable[int] = range(k)
     if array is not None and settings is not None and k:

@@ -35,7 +35,7 @@ def solve_fast(
     """The result; where the first starts do not solve it, what they came to; None for what the lane cannot take."""
     began = perf_counter()
     settings = solver.lane
-    if settings is None or len(chain.frames) > 1:
+    if settings is None or not chain.has_lane:
         return None
     near = aligned = DEFAULT_TOLERANCE
     asked: Target | NDArray[np.float64] | None = None

@@ -40,7 +40,7 @@ class Ledger:
     @property
     def status(self) -> IKStatus:
         """Why a search ended that has not solved its problem."""
-        if self.problem.gap > 0.0:
+        if self.problem.gap > 0.0 or self.problem.limits.rigid:
             return IKStatus.UNREACHABLE
         timed = self._budget.seconds is not None and self.left() > 0
         return IKStatus.STOPPED if timed else IKStatus.OUT_OF_TOLERANCE

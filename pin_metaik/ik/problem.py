@@ -14,10 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, instance
 from pin_metaik.collision import CollisionWorld
-from pin_metaik.errors import FrameNotFound, InvalidSetting, InvalidTarget
+from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import Chain, Limits
-from pin_metaik.kinematics.model import as_configuration
 from pin_metaik.optimize import Box
 from pin_metaik.optimize.settings import few
 
@@ -131,11 +130,16 @@ class IKProblem:
 
     @cached_property
     def gap(self) -> float:
-        """How far (m) the targets are proved to be out of reach; 0 proves nothing."""
-        return max(
-            self.chain.reach(t, oriented=math.isfinite(target.allowance[1])).gap(target.pose, *target.allowance)
-            for t, target in enumerate(self.targets)
-        )
+        """How far (m) the targets, or the wrists behind them, are proved to be out of reach; 0 proves nothing."""
+        return max(self._gap(t, oriented=math.isfinite(one.allowance[1])) for t, one in enumerate(self.targets))
+
+    def gaps(self, t: int) -> tuple[float, float]:
+        """How far (m) target number t is proved to be out of reach: the frame itself, and with its orientation."""
+        oriented = math.isfinite(self.targets[t].allowance[1])
+        return self._gap(t, oriented=False), self._gap(t, oriented)
+
+    def _gap(self, t: int, oriented: bool) -> float:
+        return self.chain.reach(t, oriented).gap(self.targets[t].pose, *self.targets[t].allowance)
 
     def linearize(self, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Weighted residual r (m,) and its Jacobian by coordinate J (n, m) at x (n,)."""
@@ -149,6 +153,14 @@ class IKProblem:
         if self.descended is not None:
             return np.empty((0, self.chain.n))
         return self.chain.branches(self.targets[0].pose.homogeneous, x0)
+
+    def branchless(self, x0: NDArray[np.float64]) -> bool:
+        """Whether the arm has a closed form and that no solution, so that to search on at length is in vain.
+
+        It is no proof: near a singularity or a limit, rounding may hide a branch, but a short search finds those.
+        """
+        formal = self.descended is None and not self.loose and len(self.chain.form) > 0
+        return formal and not len(self.branches(x0))
 
     def near(self, count: int) -> NDArray[np.float64]:
         """Sampled coordinates (count, n) of the chain's atlas with the poses nearest to the targets, nearest first."""
@@ -170,10 +182,10 @@ class IKProblem:
 
     def verdict(self, q: NDArray[np.float64]) -> Verdict:
         """Judge a configuration q (nq,) with Pinocchio's forward kinematics, the limits, and coal."""
-        q = as_configuration(self.chain.model, q)
+        q = array("q", q, self.chain.model.nq, error=InvalidConfiguration, finite=False)
         position = orientation = 0.0
-        accepted = self.chain.limits.contains(self.chain.x(q))
-        for target, placement in zip(self.targets, self.chain.placements(q), strict=True):
+        accepted = self.chain.limits.contains(self.chain.coordinates.read(q))
+        for target, placement in zip(self.targets, self.chain._placed(q), strict=True):
             judged = target.judge(placement)
             position = max(position, judged.position_error)
             orientation = max(orientation, judged.orientation_error)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.dexterity import rank
 from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.reasons import cannot_move, collisions, no_branch, out_of_reach
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 
@@ -28,7 +29,7 @@ class IKStatus(StrEnum):
     SOLVED = "SOLVED"
     """Within the tolerances and inside the limits, by Pinocchio; in a world also free of collisions, by coal."""
     UNREACHABLE = "UNREACHABLE"
-    """Proved out of reach: farther from, or nearer to, a joint than the links between can span."""
+    """Proved out of reach: farther from, or nearer to, a joint than the links between span; or no joint can move."""
     OUT_OF_TOLERANCE = "OUT_OF_TOLERANCE"
     """The budget of evaluations is spent and nothing found is close enough."""
     IN_COLLISION = "IN_COLLISION"
@@ -114,15 +115,16 @@ class IKResult:
             case IKStatus.SOLVED:
                 return "within the tolerances and inside the limits"
             case IKStatus.UNREACHABLE:
-                return f"out of reach: at least {self.problem.gap:.3g} m beyond what the links can span"
+                return out_of_reach(self.problem)
             case IKStatus.OUT_OF_TOLERANCE:
-                stuck = f"; at a limit: {', '.join(self.binding)}" if self.binding else ""
+                still, free = cannot_move(self.problem), [n for n in self.binding if n not in self.chain.limits.stuck]
+                stuck = (f"; at a limit: {', '.join(free)}" if free else "") + (f"; {still}" if still else "")
                 asked = len(self.problem.rows)
                 lost = f"; {asked - self.rank} of {asked} directions lost there" if self.rank < asked else ""
                 spent = f"nothing close enough found in {self.evaluations} evaluations"
-                return f"{spent}; this is the nearest{stuck}{lost}"
+                return f"{no_branch(self.problem, self.x)}{spent}; this is the nearest{stuck}{lost}"
             case IKStatus.IN_COLLISION:
-                shown = "; ".join(map(str, self.contacts[:3])) + ("; ..." if len(self.contacts) > 3 else "")
+                shown = collisions(self.chain, self.world, self.contacts)
                 return f"met only in collision; the least deep found: {shown}"
             case IKStatus.STOPPED:
                 return "time was up before it was solved; this is the best so far"

@@ -18,6 +18,7 @@ from pin_metaik.ik.refine.dls import DLS, PROGRESS
 from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
+from pin_metaik.kinematics.closed_form import BRANCHLESS
 from pin_metaik.optimize import Budget
 from pin_metaik.optimize.settings import few, positive
 from pin_metaik.randomness import Rng
@@ -25,7 +26,7 @@ from pin_metaik.randomness import Rng
 BATCH = 128  # starts between two looks at what came of them
 VAIN = 60  # starts in a row that led to nothing new ...
 VAIN_EACH = 15  # ... and as many more for each solution known, before the set counts as complete
-WHOLE = 20_000  # evaluations for solutions anywhere in the tolerances, where there are none in the middle
+MIDDLE = 5000  # evaluations for a solution in the middle of loose tolerances before all of them is aimed at
 ROOM = 0.1  # of the distance between distinct solutions: tolerances that may move a solution so far
 SETTINGS = DLS()
 DEFAULT_BUDGET = Budget(evaluations=200_000)
@@ -132,13 +133,14 @@ def collect(
 
     They are in the middle of the tolerances; if nothing is, anywhere in them, which is returned as the problem first.
     """
-    found, complete, spent = _collect(problem, x0, rng, limit, apart, budget)
-    left = (budget.evaluations or 0) - spent
-    if len(found) or left <= 0 or problem.gap > 0.0:
+    total = budget.evaluations or 0
+    in_vain = MIDDLE if problem.loose else BRANCHLESS if problem.branchless(x0) else total - total // 10
+    found, complete, spent = _collect(problem, x0, rng, limit, apart, budget, in_vain)
+    if len(found) or spent >= total or problem.gap > 0.0 or problem.limits.rigid:
         return problem, found, complete and not _roomy(problem, apart), spent
-    rest = replace(budget, evaluations=min(left, WHOLE))
-    found, complete, more = _collect(problem.whole, x0, rng, limit, apart, rest)
-    return problem.whole, found, complete and not len(found), spent + more
+    rest = replace(budget, evaluations=total - spent)
+    found, _, more = _collect(problem.whole, x0, rng, limit, apart, rest, in_vain)
+    return problem.whole, found, False, spent + more
 
 
 def _roomy(problem: IKProblem, apart: float) -> bool:
@@ -148,15 +150,22 @@ def _roomy(problem: IKProblem, apart: float) -> bool:
 
 
 def _collect(
-    problem: IKProblem, x0: NDArray[np.float64], rng: Rng, limit: int, apart: float, budget: Budget
+    problem: IKProblem,
+    x0: NDArray[np.float64],
+    rng: Rng,
+    limit: int,
+    apart: float,
+    budget: Budget,
+    in_vain: int,
 ) -> tuple[NDArray[np.float64], bool, int]:
+    """The same where the problem aims; given up when so many evaluations found nothing."""
     began = perf_counter()
     found = np.empty((limit, problem.chain.n))
     total = budget.evaluations or 0
     known, complete, spent = _by_closed_form(problem, x0, found, apart, total)
     if complete:
         return found[:known], True, spent
-    vain = 0
+    vain, unreachable = 0, problem.gap > 0.0 or problem.limits.rigid
     for index in count():
         starts = drawn(problem.chain, rng, index, BATCH)
         if index == 0:
@@ -168,7 +177,8 @@ def _collect(
         known, spent = more, spent + evaluations
         enough = VAIN + VAIN_EACH * known
         late = budget.seconds is not None and perf_counter() - began >= budget.seconds
-        if known == limit or spent >= total or late or (vain >= enough) or (known == 0 and problem.gap > 0.0):
+        hopeless = known == 0 and (unreachable or spent >= in_vain)
+        if known == limit or spent >= total or late or vain >= enough or hopeless:
             return found[:known], known < limit and vain >= enough, spent
     raise AssertionError("count() does not end")
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import islice
 from time import perf_counter
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,8 +25,11 @@ from pin_metaik.ik.select import SELECT
 from pin_metaik.ik.solutions import collect
 from pin_metaik.ik.starts import start_batches
 from pin_metaik.ik.target import DEFAULT_TOLERANCE
+from pin_metaik.kinematics.closed_form import BRANCHLESS
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
 from pin_metaik.randomness import DEFAULT_SEED, Rng, as_generator
+
+Refine: TypeAlias = Callable[[IKProblem, NDArray[np.float64], int], Refinement]
 
 ELITE = 8  # points of a seeder's search that are refined
 SEEDER_SHARE = 0.25  # of the budget, for one round of the seeder before its elite is refined
@@ -95,20 +99,25 @@ class IKSolver:
         """
         began = perf_counter()
         instance(IKProblem, problem=problem)
-        instance(Refinement | None, first=first)
+        if first is not None:
+            instance(Refinement, first=first)
         if q0 is not None:
             problem = problem.at(q0)
         chain = problem.chain
         base = chain.reference if q0 is None else chain.configuration(q0)
         x0 = chain.x(base)
-        ledger = Ledger(problem.whole if problem.loose else problem, self.budget, began, x0)
+        brief = self.seeder == "auto" and problem.branchless(x0)
+        budget = replace(self.budget, evaluations=self._brief) if brief else self.budget
+        ledger = Ledger(problem.whole if problem.loose else problem, budget, began, x0)
         if first is not None:
             ledger.add(first)
-        if self.select != "first":
+        if chain.limits.rigid:  # there is nothing to search: it stands where it stands
+            ledger.x, ledger.met, ledger.spent = chain.limits.lower, True, 1
+        if self.select != "first" and not ledger.met:
             self._choose(problem, x0, base, rng, ledger)
         if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
             self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
-        if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
+        if self._seeder is not None and not brief and not ledger.over() and problem.gap == 0.0:
             self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
         if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None:
             ledger.add(self._refiner.settle(ledger.problem, ledger.x, ledger.left()))
@@ -150,6 +159,12 @@ class IKSolver:
             kept = problem.world is None or problem.accepts(problem.chain.q(better, base))
             ledger.x, ledger.met = better if kept else best, True
 
+    @property
+    def _brief(self) -> int:
+        """Evaluations in all where the closed form of an arm has no solution."""
+        most = math.ceil(BRANCHLESS / RESTART_SHARE)
+        return most if self.budget.evaluations is None else min(most, self.budget.evaluations)
+
     @cached_property
     def lane(self) -> NDArray[np.float64] | None:
         """Settings of the fast lane, with the default tolerances, if it can take this solver's first step.
@@ -173,37 +188,31 @@ class IKSolver:
         """
         share = 1.0 - RESERVE if self._seeder is None else RESTART_SHARE
         batches = partial(start_batches, problem.chain, x0, rng, self.starts)
-        if not problem.loose:
-            self._refine(problem, refiner, batches(tried), bool(tried), ledger, share)
-            if self.starts is None and not ledger.met:  # starts that were counted are not counted twice
-                self._refine(problem.whole, refiner, islice(batches(), 1), False, ledger, share + RESERVE)
-            return
-        if not tried:
-            self._refine(problem, refiner, islice(batches(), 1), False, ledger, share)
-        if not ledger.met:
-            self._refine(problem.whole, refiner, batches(), False, ledger, share)
+        anywhere = refiner.refine
+        if self._seeder is not None and isinstance(refiner, DLS):
+            anywhere = refiner.refine_anywhere
 
-    def _refine(
-        self,
-        problem: IKProblem,
-        refiner: Refiner,
-        batches: Iterator[NDArray[np.float64]],
-        begun: bool,
-        ledger: Ledger,
-        share: float,
-    ) -> None:
-        """Refine from one batch of starts after the other; the automatic solver begins with an atlas of the chain."""
-        refine = refiner.refine
-        if self._seeder is not None and isinstance(refiner, DLS) and not begun:
-            refine = refiner.refine_anywhere
-        if ledger.over(share) or (ledger.spent + begun and problem.gap > 0.0):
+        def over(share: float) -> bool:
+            return ledger.over(share) or problem.gap > 0.0
+
+        def refine(aim: IKProblem, first: Refine, batches: Iterator[NDArray[np.float64]], share: float) -> None:
+            for starts in batches:
+                before = ledger.spent
+                ledger.add(first(aim, starts, ledger.left(share)))
+                if over(share) or ledger.spent == before:
+                    return
+                first = refiner.refine
+
+        if problem.loose:
+            if not tried:
+                refine(problem, anywhere, islice(batches(), 1), share)
+            if not over(share):
+                refine(problem.whole, anywhere, batches(), share)
             return
-        for starts in batches:
-            before = ledger.spent
-            ledger.add(refine(problem, starts, ledger.left(share)))
-            if ledger.over(share) or problem.gap > 0.0 or ledger.spent == before:
-                return
-            refine = refiner.refine
+        if not tried or not over(share):
+            refine(problem, refiner.refine if tried else anywhere, batches(tried), share)
+        if not ledger.met and self.starts is None and not over(share + RESERVE):  # no start counts twice
+            refine(problem.whole, anywhere, islice(batches(), 1), share + RESERVE)
 
     def _seed(
         self,

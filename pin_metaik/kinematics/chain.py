@@ -16,6 +16,7 @@ from pin_metaik.arguments import array, checked, shown
 from pin_metaik.errors import FixedFrame, InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.kinematics.atlas import LEAF, SEED, Atlas, chart
 from pin_metaik.kinematics.closed_form import closed_form
+from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.model import (
     HasModel,
     as_configuration,
@@ -29,7 +30,7 @@ from pin_metaik.kinematics.model import (
     neutral_inside,
 )
 from pin_metaik.kinematics.own_limits import with_own
-from pin_metaik.kinematics.paths import base_moves, lay_paths, leader_of, motion_of
+from pin_metaik.kinematics.paths import Motion, base_moves, lay_paths, leader_of, motion_of
 from pin_metaik.kinematics.placing import Placing, Scratch
 from pin_metaik.kinematics.reach import Reach, reach_of
 from pin_metaik.optimize import Box
@@ -77,6 +78,7 @@ class Chain:
         reference: (nq,) the configuration that joints outside the chain are held at.
         held: Entries of a configuration that place the frames but are no coordinates: those of joints on the way that
             are locked, or follow a locked one. Mostly there are none.
+        has_lane: Whether the fast lane can take it: it has one frame, and can move.
         movers: Ids of all joints of the model that move with the coordinates, those that mimic one included.
         paths: The arrays the compiled loops take.
         kernels: The compiled loops.
@@ -98,7 +100,8 @@ class Chain:
             model: Any Pinocchio model, or a robot that has one: a ``Robot``, or Pinocchio's ``RobotWrapper``.
             frame: A frame's name, or several that are to be placed at once.
             locked: Joints on the way that shall stay where they are; of one that mimics another, the other is locked.
-            limits: Ranges (lower, upper) in rad or m that replace the model's, by joint name.
+            limits: Ranges (lower, upper) in rad or m that replace the model's, by joint name; those of a joint that
+                mimics one of the chain bind the one it mimics.
             reference: (nq,) configuration of the joints that are not moved, unless a solver is given ``q0``; also where
                 searches without ``q0`` start, inside the limits. Default: neutral, inside the limits.
 
@@ -107,7 +110,7 @@ class Chain:
             FixedFrame: If no joint is left that moves it.
             UnsupportedJoint: If a joint on the way has several degrees of freedom (lock it), or no single axis.
             UnknownName: If a locked joint does not exist.
-            InvalidBounds: If limits are crossed or NaN.
+            InvalidBounds: If limits are crossed or NaN, or those of joints that move together leave no room.
             InvalidConfiguration: If ``reference`` is not a configuration of the model.
             InvalidSetting: If ``model`` is no robot, or no frame is named.
         """
@@ -131,9 +134,8 @@ class Chain:
 
         self.names = tuple(model.names[j] for j in drivers)
         self.coordinates = coordinates_of(model, drivers)
-        mimicked = {motion.driver for motion in motions.values() if motion.scale != 1.0}
-        self.limits = with_own(limits_of(model, drivers, self.names, mimicked), limits or {})
         self.movers = frozenset(j for j in range(1, model.njoints) if leader_of(model, j) in drivers)
+        self.limits = self._limits(motions, drivers, dict(limits or {}))
         self._held_joints = sorted({leader_of(model, j) for j in on_path - motions.keys()})
         self._held = entries_of(model, self._held_joints)
         self.held = tuple(self._held.tolist())
@@ -141,12 +143,29 @@ class Chain:
         plain, entries = self.coordinates.plain, self.coordinates.plain_q
         self._least, self._most = np.full(model.nq, -np.inf), np.full(model.nq, np.inf)
         self._least[entries], self._most[entries] = self.limits.lower[plain], self.limits.upper[plain]
+        self.has_lane = len(self.frames) == 1 and not self.limits.rigid
         self.kernels = _kernels()
         self._own = Scratch(model)
         self.tip = Placing(model, self.frame_ids[0])
         self._samples: dict[tuple[int, tuple[int, ...]], NDArray[np.float64]] = {}
         self._original, self._elsewhere, self._lock = self, dict[bytes, Chain](), Lock()
         self._hold(self.configuration(neutral_inside(model) if reference is None else reference))
+
+    def _limits(self, motions: dict[int, Motion], drivers: list[int], given: dict[str, tuple[float, float]]) -> Limits:
+        """Limits of the coordinates, with those that somebody gave for them or for joints that follow them."""
+        model = self.model
+        followers = self.movers.difference(drivers)
+        alike = {j for j in followers if j in motions and motions[j].rotates and motions[j].scale == 1.0}
+        mimicked = {leader_of(model, j) for j in followers - alike}
+        own = {name: span for name, span in given.items() if name not in {model.names[j] for j in followers}}
+        limits = with_own(limits_of(model, drivers, self.names, mimicked), own)
+        for j in followers:
+            if model.names[j] in given:
+                mimic = model.joints[j].extract()
+                leader = model.names[leader_of(model, j)]
+                line = float(mimic.scaling), float(mimic.offset)
+                limits = limits.bound(leader, line, model.names[j], given[model.names[j]])
+        return limits
 
     def _hold(self, reference: NDArray[np.float64]) -> None:
         """Fold the held joints into the way to the frames, where ``reference`` (nq,) has them."""
@@ -232,7 +251,7 @@ class Chain:
         Raises:
             InvalidConfiguration: If its length is not nq or an entry is not finite.
         """
-        return self.inside(as_configuration(self.model, q))
+        return np.minimum(np.maximum(as_configuration(self.model, q), self._least), self._most)
 
     def inside(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
         """The nearest configurations inside the limits to q (..., nq); pairs and quaternions are left alone."""
@@ -344,7 +363,11 @@ class Chain:
 
     def placements(self, q: NDArray[np.float64]) -> list[pin.SE3]:
         """World placement of each frame at configuration q (nq,), by Pinocchio."""
-        pin.forwardKinematics(self.model, self.data, as_configuration(self.model, q))
+        return self._placed(as_configuration(self.model, q))
+
+    def _placed(self, q: NDArray[np.float64]) -> list[pin.SE3]:
+        """The same, of a configuration that was looked at already."""
+        pin.forwardKinematics(self.model, self.data, q)
         return [pin.SE3(pin.updateFramePlacement(self.model, self.data, f)) for f in self.frame_ids]
 
     def poses(self, X: ArrayLike) -> NDArray[np.float64]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit
 from pin_metaik.kinematics.branches import Vector
+from pin_metaik.kinematics.closed_form import BRANCHLESS
 from pin_metaik.kinematics.descent import Work, descend_from, workspace
 from pin_metaik.kinematics.desk import (
     NOWHERE,
@@ -90,11 +91,13 @@ def go_on(
     looks: Looks,
 ) -> int:
     """Descend from the branch that ``begin`` found, if it did, then ``search``; returns all evaluations."""
-    arm, bounds, entries, _, _ = unpack(block)
+    arm, bounds, entries, _, form = unpack(block)
     task, guess, start, best, _ = laid_out(desk, bounds[0].shape[0])
     tasks = task.reshape(1, 26)
     descent, most = (settings[0], settings[1], int(settings[2])), int(settings[3])
     (spent, todo), met = begun, False
+    if todo == SEARCH and rows is None and form.shape[0] > 0:
+        most = min(most, BRANCHLESS)
     if todo == DESCEND:
         steps, met, _ = descend_from(arm, tasks, rows, bounds, start, descent, most, np.inf, best, work)
         spent += steps

@@ -64,6 +64,16 @@ class Limits:
         """Lower, upper and winds as every search takes them."""
         return self.lower, self.upper, self.winds.astype(np.int64)
 
+    @cached_property
+    def stuck(self) -> tuple[str, ...]:
+        """Names of the joints whose limits are equal: they cannot move."""
+        return tuple(name for name, (low, high) in zip(self.names, self._pairs, strict=True) if low == high)
+
+    @property
+    def rigid(self) -> bool:
+        """Whether no joint can move."""
+        return len(self.stuck) == len(self.names)
+
     @property
     def periodic(self) -> NDArray[np.bool_]:
         """(n,) True for a coordinate that returns after a turn and has no limits: a continuous joint."""
@@ -112,7 +122,9 @@ class Limits:
     def contains(self, x: NDArray[np.float64], tolerance: float = 0.0) -> bool:
         """Whether every coordinate is inside its limits, up to ``tolerance`` (rad or m)."""
         # Plain floats: on a handful of numbers three times quicker than numpy's reductions.
-        x, tolerance = array("x", x, len(self.names), finite=False), number("tolerance", tolerance)
+        x = array("x", x, len(self.names), finite=False)
+        if type(tolerance) is not float:
+            tolerance = number("tolerance", tolerance)
         return all(
             low - tolerance <= v <= high + tolerance for (low, high), v in zip(self._pairs, x.tolist(), strict=True)
         )
@@ -138,6 +150,32 @@ class Limits:
             lower[i], upper[i] = _pair(name, span)
         winds = self.winds & (upper - lower >= 2.0 * np.pi)
         return Limits(lower, upper, self.velocity, self.rotates, winds, self.names)
+
+    def bound(self, leader: str, line: tuple[float, float], follower: str, span: tuple[float, float]) -> Limits:
+        """The same limits where a joint that follows one of these, at scale x + shift, keeps to a range of its own.
+
+        Args:
+            leader: The joint of these limits that is followed.
+            line: Scale and shift (rad or m).
+            follower: The joint that follows.
+            span: Its range, rad or m.
+
+        Raises:
+            InvalidBounds: If the range is crossed or NaN, or leaves the leader no room.
+        """
+        scale, shift = line
+        low, high = _pair(follower, span)
+        if not low <= high:
+            raise InvalidBounds(f"joint {follower!r} has its lower limit {low} above its upper limit {high}")
+        i = self.names.index(leader)
+        ends = sorted(((low - shift) / scale, (high - shift) / scale)) if scale else [-np.inf, np.inf]
+        least, most = max(ends[0], self.lower[i]), min(ends[1], self.upper[i])
+        if least > most or not (scale or low <= shift <= high):
+            raise InvalidBounds(
+                f"joint {follower!r} is at {scale:g} {leader!r} + {shift:g}: its limits [{low:g}, {high:g}] leave no "
+                f"room to {leader!r}, whose own are [{self.lower[i]:g}, {self.upper[i]:g}]"
+            )
+        return self.replace({leader: (least, most)})
 
 
 def finite_or_infinite(values: ArrayLike) -> NDArray[np.float64]:

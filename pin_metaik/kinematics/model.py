@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+import math
+from typing import Any, Protocol
 
 import numpy as np
 import pinocchio as pin
@@ -23,6 +24,9 @@ def as_configuration(model: pin.Model, q: ArrayLike) -> NDArray[np.float64]:
     Raises:
         InvalidConfiguration: If its length is not nq or an entry is not finite.
     """
+    given: Any = q
+    if type(q) is np.ndarray and q.dtype.char == "d" and q.shape == (model.nq,) and math.isfinite(np.add.reduce(q)):
+        return given  # type: ignore[no-any-return]  # what worlds ask for thousands of times
     return array(f"a configuration of {model.name!r}", q, model.nq, error=InvalidConfiguration)
 
 

@@ -43,8 +43,8 @@ def within(name: str, value: float, low: float, high: float = math.inf) -> None:
         InvalidSetting: It is not.
     """
     try:
-        inside = bool(low <= value <= high)
-    except (TypeError, ValueError):
+        inside = bool(low <= value <= high) and float(value) <= high
+    except (TypeError, ValueError, OverflowError):
         inside = False
     if not inside:
         raise InvalidSetting(f"{name} must be a number from {low:g} to {high:g}, not {shown(value)}")
@@ -57,8 +57,8 @@ def positive(name: str, value: float) -> None:
         InvalidSetting: It is not.
     """
     try:
-        fine = bool(0 < value < math.inf)
-    except (TypeError, ValueError):
+        fine = bool(value > 0) and float(value) < math.inf
+    except (TypeError, ValueError, OverflowError):
         fine = False
     if not fine:
         raise InvalidSetting(f"{name} must be a number above 0, not {shown(value)}")

@@ -9,12 +9,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, instance
 from pin_metaik.errors import InvalidBounds
-from pin_metaik.optimize.settings import few
+from pin_metaik.optimize.settings import MANY, few
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, init=False)
 class Box:
     """The points ``lower <= x <= upper``, coordinate by coordinate.
 
@@ -32,8 +32,10 @@ class Box:
     upper: Array
     _rows: tuple[Array, Array] = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
-        lower, upper = _vector("lower", self.lower), _vector("upper", self.upper)
+    def __init__(self, lower: ArrayLike, upper: ArrayLike | None = None) -> None:
+        if upper is None:
+            raise InvalidBounds("the box of a search has lower and upper bounds; a solid is a mik.collision.Box(size)")
+        lower, upper = _vector("lower", lower), _vector("upper", upper)
         if lower.shape != upper.shape:
             raise InvalidBounds(f"lower has {lower.size} bounds and upper has {upper.size}: they must match")
         for index in np.flatnonzero(lower > upper):
@@ -59,8 +61,10 @@ class Box:
 
     def sample(self, rng: np.random.Generator, count: int) -> Array:
         """Points drawn uniformly: (count, n)."""
-        instance(np.random.Generator, rng=rng)
-        few("count", count, 0)
+        if not isinstance(rng, np.random.Generator):
+            instance(np.random.Generator, rng=rng)
+        if type(count) is not int or not 0 <= count <= MANY:
+            few("count", count, 0)
         X: Array = self.lower + rng.random((count, self.dimension)) * self.width
         return np.minimum(X, self.upper, out=X)  # rounding may have passed it
 
@@ -97,7 +101,7 @@ class Box:
 
     def _points(self, name: str, X: Array) -> Array:
         """X as points (k, n) or one point (n,)."""
-        if type(X) is np.ndarray and X.dtype == float and X.ndim in (1, 2) and X.shape[-1] == self.lower.size:
+        if type(X) is np.ndarray and X.dtype.char == "d" and X.ndim in (1, 2) and X.shape[-1] == self.lower.size:
             return X
         given = array(name, X, "...", self.lower.size, finite=False)
         return array(name, X, "k", self.lower.size, finite=False) if given.ndim > 2 else given

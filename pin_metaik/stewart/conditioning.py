@@ -81,6 +81,7 @@ def best_length(geometry: Geometry, poses: PoseLike, norm: Norm = "frobenius") -
     At a single pose, for the Frobenius norm and six legs, that is ``L^4 = |J2|^2 |X1|^2 / (|J1|^2 |X2|^2)`` with
     ``J = [J1, J2]`` and ``J^-1 = [X1; X2]``. The radius of the platform where every pose is singular.
     """
+    one_of("norm", norm, Norm)
     T = as_poses(poses)
     size = float(np.linalg.norm(geometry.m, axis=1).max())
 

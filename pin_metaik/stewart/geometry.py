@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import array, checked, number
+from pin_metaik.arguments import array, checked, number, shown
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
 
@@ -171,9 +171,10 @@ def _number(name: str, value: object) -> float:
 
 
 def _numbers(name: str, values: Any) -> tuple[float, ...]:
-    if isinstance(values, str) or not isinstance(values, (Sequence, np.ndarray)) or np.ndim(values) == 0:
-        raise InvalidGeometry(f"{name} is a list of numbers, got {values!r}")
-    return tuple(_number(name, value) for value in values)
+    listed = values.tolist() if isinstance(values, np.ndarray) else values
+    if isinstance(listed, str) or not isinstance(listed, Sequence):
+        raise InvalidGeometry(f"{name} is a list of numbers, got {shown(values)}")
+    return tuple(_number(name, value) for value in listed)
 
 
 def _radius(name: str, value: object) -> float:

@@ -55,7 +55,8 @@ class Grid:
     def __post_init__(self) -> None:
         for name in ("counts", "steps"):
             counts = getattr(self, name)
-            if not isinstance(counts, (tuple, list, np.ndarray)) or np.shape(counts) != (3,):
+            listed = counts.tolist() if isinstance(counts, np.ndarray) else counts
+            if not isinstance(listed, (tuple, list)) or len(listed) != 3:
                 raise InvalidBounds(f"{name} of a grid are three whole numbers, got {counts!r}")
             for count in counts:
                 few(f"{name} of a grid", count)

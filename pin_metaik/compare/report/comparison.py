@@ -37,8 +37,8 @@ def write_report(folder: Path) -> list[Path]:
         CannotWrite: The report cannot be written there.
     """
     need_figures()
-    writable(folder / STEM, folder=True)
     results = read_results(folder)
+    writable(folder / STEM, folder=True)
     if not results.trials:
         raise InvalidSetting(f"{folder} has no rows yet: run pin-metaik compare --out {folder}")
     sessions = read_environment(folder)

@@ -42,30 +42,29 @@ class DLS:
         if self.iterations < 1:
             raise InvalidSetting(f"iterations is at least 1, got {self.iterations!r}")
 
-    @checked
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent."""
+        starts = given_starts(problem, starts, evaluations)
         return self._descend(problem, no_atlas(problem.chain.n, len(problem.targets)), starts, evaluations, PROGRESS)
 
-    @checked
     def refine_anywhere(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """The same, but from the sampled configurations that have the nearest poses, too.
 
         The first start (s, n) goes before them when its pose is nearer to the target than theirs.
         """
+        starts = given_starts(problem, starts, evaluations)
         return self._descend(problem, problem.chain.atlas, starts, evaluations, PROGRESS)
 
-    @checked
     def settle(self, problem: IKProblem, x: NDArray[np.float64], evaluations: int) -> Refinement:
         """Go on from x (n,) in small steps as long as it gets nearer at all: for targets that cannot be met."""
+        start = given_starts(problem, [x], evaluations)
         return replace(self, damping=STIFF)._descend(
-            problem, no_atlas(problem.chain.n, len(problem.targets)), x[None], evaluations, SETTLED
+            problem, no_atlas(problem.chain.n, len(problem.targets)), start, evaluations, SETTLED
         )
 
     def _descend(
         self, problem: IKProblem, atlas: Atlas, starts: NDArray[np.float64], evaluations: int, progress: float
     ) -> Refinement:
-        starts = given_starts(problem, starts)
         chain = problem.chain
         best = np.empty(chain.n)
         spent, solved_by = chain.kernels.descend(

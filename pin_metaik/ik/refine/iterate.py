@@ -50,7 +50,7 @@ def iterate(
     A step that leaves the limits is clipped onto them, coordinate by coordinate. Meeting the tolerances is followed by
     further steps for as long as each gains a decade. One evaluation is one residual with its Jacobian.
     """
-    starts = given_starts(problem, starts)
+    starts = given_starts(problem, starts, evaluations)
     chain = problem.chain
     lower, upper = chain.limits.lower, chain.limits.upper
     linearize, given = chain.kernels.linearize, (*chain.paths.arrays, problem.tasks, problem.rows)

@@ -8,7 +8,6 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.arguments import checked
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.iterate import Patience, iterate
 from pin_metaik.ik.refine.protocol import Refinement
@@ -46,7 +45,6 @@ class LM:
         if self.scale is not None:
             positive("scale", self.scale)
 
-    @checked
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent."""
         return iterate(problem, starts, evaluations, self.step, self.patience)

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.arguments import checked
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.iterate import Patience, iterate
 from pin_metaik.ik.refine.protocol import Refinement
@@ -26,7 +25,6 @@ class Transpose:
 
     patience: Patience = field(default=Patience(iterations=2000, steps=50, share=0.8))
 
-    @checked
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent."""
         return iterate(problem, starts, evaluations, self.step, self.patience)

@@ -16,7 +16,8 @@ import shapely
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import array, checked
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.paths import visibility_kernels as kernels
 from pin_metaik.mobile.paths.edge_grid import EdgeGrid
 from pin_metaik.mobile.world.border import Border, Indices
@@ -93,6 +94,7 @@ class Visibility:
         sees |= sees.T
         return sees
 
+    @checked
     def nodes(self, start: Point, goal: Point) -> tuple[Array, Indices]:
         """Corners, start and goal as points (c + 2, 2), and which vertex each is (c + 2,), -1 for the last two."""
         corners = self.border.corners
@@ -119,5 +121,8 @@ class Visibility:
         Kernels see where a line crosses the border. From one point on it to another, inside, it crosses nothing; at a
         corner that cannot be, as lines are taut there.
         """
+        a, b = array("a", a, "n", 2), array("b", b, "n", 2)
+        if 1 not in (len(a), len(b)) and len(a) != len(b):
+            raise InvalidSetting(f"as many ends as beginnings, or one, got {len(a)} and {len(b)}")
         a, b = np.broadcast_arrays(a, b)
         return np.asarray(shapely.intersects(self.space.core, shapely.linestrings(np.stack((a, b), axis=1))))

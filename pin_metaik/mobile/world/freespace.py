@@ -115,6 +115,7 @@ class FreeSpace:
         line = _line(path)
         return bool(np.isfinite(path).all()) and not self.core.intersects(line)
 
+    @checked
     def connects(self, start: Point, goal: Point) -> bool:
         """Whether there is a way between two places that are free."""
         parts, ends = shapely.get_parts(self.region), shapely.points([start, goal])
@@ -151,6 +152,7 @@ class FreeSpace:
         )
         return within and self.distance(shapely.get_coordinates([place, place])) >= self.clearance
 
+    @checked
     def nearly_connects(self, start: Point, goal: Point) -> float | None:
         """A clearance that leaves a way between two places, although this space has none; None if none does.
 

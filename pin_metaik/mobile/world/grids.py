@@ -63,6 +63,7 @@ class OccupancyGrid:
         x_min, y_min, x_max, y_max = self._placed(self._sheet).bounds
         return x_min, y_min, x_max, y_max
 
+    @checked
     def without_specks(self, cells: int) -> OccupancyGrid:
         """The grid without what is noise, perhaps: groups of fewer occupied cells, joined along edges or at corners.
 

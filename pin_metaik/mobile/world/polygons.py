@@ -46,6 +46,7 @@ def read_obstacles(source: Any) -> tuple[BaseGeometry, ...]:
     return tuple(_checked(geometry, place) for geometry, place in _walk(source, "obstacles"))
 
 
+@checked
 def read_polygons(source: Any) -> tuple[shapely.Polygon, ...]:
     """The polygons of a source, checked one by one; see ``read_obstacles``.
 
@@ -80,7 +81,7 @@ def _walk(source: Any, place: str) -> Iterator[Found]:
             yield from _walk(source.__geo_interface__, place)
         case _ if _is_ring(source):
             yield _ring(source, place), place
-        case Iterable():
+        case Iterable() if not isinstance(source, np.ndarray) or source.ndim:
             for i, item in enumerate(source):
                 yield from _walk(item, f"{place}[{i}]")
         case _:

@@ -14,7 +14,7 @@ from typing import Any
 
 import shapely
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidGeometry, UnknownName
 from pin_metaik.mobile.files import only, read_json
 from pin_metaik.mobile.world.grids import Unknown, read_grid
@@ -182,10 +182,8 @@ def _point(role: str, value: Any) -> Point:
 
 
 def _bounds(value: Any) -> tuple[float, float, float, float]:
-    try:
-        x_min, y_min, x_max, y_max = (float(v) for v in value)
-    except (TypeError, ValueError, OverflowError):
-        raise InvalidGeometry(f"bounds are (x_min, y_min, x_max, y_max), got {value!r}") from None
+    given = array("bounds are (x_min, y_min, x_max, y_max)", value, 4, error=InvalidGeometry, finite=False)
+    x_min, y_min, x_max, y_max = given.tolist()
     if not (x_min < x_max and y_min < y_max and math.isfinite(x_max - x_min) and math.isfinite(y_max - y_min)):
         raise InvalidGeometry(f"bounds must have x_min < x_max and y_min < y_max, finite; got {value!r}")
     return x_min, y_min, x_max, y_max
