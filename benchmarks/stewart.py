@@ -96,6 +96,78 @@ def speeds() -> Iterator[str]:
     yield f"| all assemblies of a 6x6 | {rate(1 / every)} |"
 
 
+def assemblies(platforms: int = 2000) -> Iterator[str]:
+    """What forward kinematics finds for random 6x6 platforms at random poses."""
+    rng = np.random.default_rng(1)
+    mirror = np.diag([1.0, 1.0, -1.0, 1.0])
+    found = incomplete = lost = unpaired = 0
+    worst, seconds = 0.0, 0.0
+    for _ in track(range(platforms), "assembling", console=Console(stderr=True), transient=True):
+        angles = [np.sort(rng.uniform(0, 2 * np.pi, 6)) for _ in range(2)]
+        legs = tuple((i, int(m)) for i, m in enumerate(rng.permutation(6)))
+        geometry = stewart.Geometry(0.3, rng.uniform(0.1, 0.4), *angles, legs)
+        pose = stewart.pose_at((*rng.uniform(-0.25, 0.25, 2), rng.uniform(0.05, 0.55)), rng.uniform(-1, 1, 3))
+        lengths = stewart.leg_lengths(geometry, pose)
+        began = process_time()
+        every = stewart.all_forward(geometry, lengths)
+        seconds += process_time() - began
+        found += len(every)
+        incomplete += not every.complete
+        lost += bool(np.abs(every.poses - pose).max(axis=(1, 2)).min() > 1e-6)
+        images = mirror @ every.poses @ mirror
+        unpaired += sum(bool(np.abs(every.poses - image).max(axis=(1, 2)).min() > 1e-6) for image in images)
+        worst = max(worst, float(np.abs(stewart.leg_lengths(geometry, every) - lengths).max()))
+    yield (
+        "| random 6x6 | assemblies | not proved complete | own pose not found | without mirror image | largest error m "
+        "| ms |"
+    )
+    yield "|---|---|---|---|---|---|---|"
+    numbers = f"{found} | {incomplete} | {lost} | {unpaired} | {worst:.1e}"
+    yield f"| {platforms} | {numbers} | {1e3 * seconds / platforms:.1f} |"
+
+
+def narrow() -> Iterator[str]:
+    """Workspaces of legs with little stroke, and designs of them, against a plain grid of 60 x 60 x 60 cells."""
+    yield "| legs mm | mm3 | GDI | cells reached |"
+    yield "|---|---|---|---|"
+    geometry = stewart.load_mechanism("reference_6x6").geometry
+    for stroke in (0.12, 0.02, 0.01, 0.005, 0.001):
+        workspace = stewart.survey(geometry, stewart.LegLimits(0.41 - stroke / 2, 0.41 + stroke / 2))
+        numbers = f"{1e9 * workspace.volume:.4g} | {workspace.gdi:.4f} | {workspace.cells_reached}"
+        yield f"| 410 +- {500 * stroke:g} | {numbers} |"
+    yield ""
+    yield "| design | legs mm | V / cube^3 | on 60^3 | s |"
+    yield "|---|---|---|---|---|"
+    cases = (
+        ("6x6", 0.69, (0.3, 0.8), (0.488, 0.498)),
+        ("6x6", 0.69, (0.3, 0.8), (0.492, 0.494)),
+        ("3x3", 0.3, (0.15, 0.45), (0.396, 0.404)),
+    )
+    for kind, radius, span, legs in cases:
+        ranges = stewart.Ranges(base_radius=span, platform_radius=span)
+        task = stewart.DesignTask(ranges, evaluations=1200, algorithm="pso")
+        start = stewart.standard_geometry(kind, radius, radius)
+        began = process_time()
+        found = stewart.design(stewart.Mechanism("narrow", start, stewart.LegLimits(*legs), task=task))
+        seconds = process_time() - began
+        plain = plain_volume(found.mechanism) / (2 * found.mechanism.limits.stroke) ** 3
+        span = f"{1e3 * legs[0]:g} to {1e3 * legs[1]:g}"
+        yield f"| {kind} | {span} | {found.score.workspace:.4f} | {plain:.4f} | {seconds:.1f} |"
+
+
+def plain_volume(mechanism: stewart.Mechanism, cells: int = 60) -> float:
+    """Level workspace in m^3 by numpy on a grid of its own, a little wider than what is reached."""
+    geometry, limits = mechanism.geometry, mechanism.limits
+    reached = mechanism.survey().positions
+    aside = 0.05 * np.ptp(reached, axis=0)
+    low, high = reached.min(axis=0) - aside, reached.max(axis=0) + aside
+    axes = [a + (np.arange(cells) + 0.5) * (b - a) / cells for a, b in zip(low, high, strict=True)]
+    P = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 1, 3)
+    d = np.linalg.norm(P + geometry.m - geometry.b, axis=2)
+    inside = ((d >= limits.shortest) & (d <= limits.longest)).all(axis=1)
+    return float(inside.sum() * np.prod((high - low) / cells))
+
+
 def designs() -> Iterator[str]:
     """Rows: fitness by stroke and algorithm over the seeds."""
     yield "| stroke | algorithm | f, worst | median | best | best f on 50^3 | least gap mm | median s |"
@@ -129,6 +201,12 @@ def main() -> None:
     try:
         print("## Speed\n")
         for line in speeds():
+            print(line, flush=True)
+        print("\n## All assemblies\n")
+        for line in assemblies():
+            print(line, flush=True)
+        print("\n## Narrow workspaces\n")
+        for line in narrow():
             print(line, flush=True)
         print("\n## Designs\n")
         print(

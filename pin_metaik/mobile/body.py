@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.mobile.motion.trajectory import Samples
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
 from pin_metaik.robots import Description, Robot
@@ -36,6 +37,7 @@ URDF = """<?xml version="1.0"?>
 """
 
 
+@checked
 def mobile_robot(vehicle: SynchroDrive, height: float = HEIGHT) -> Robot:
     """The robot as Pinocchio knows it; its frame ``base`` is on the floor below its centre, x is ahead.
 
@@ -52,11 +54,13 @@ def mobile_robot(vehicle: SynchroDrive, height: float = HEIGHT) -> Robot:
     return Robot(vehicle.name, description.model(), "base", description)
 
 
+@checked
 def configurations(samples: Samples) -> NDArray[np.float64]:
     """Pinocchio's configurations (n, 4) along a trajectory."""
     return np.column_stack((samples.x, samples.y, np.cos(samples.heading), np.sin(samples.heading)))
 
 
+@checked
 def velocities(samples: Samples) -> NDArray[np.float64]:
     """Pinocchio's velocities (n, 3) along a trajectory, in the robot's own frame."""
     return np.column_stack((samples.v, np.zeros_like(samples.v), samples.omega))

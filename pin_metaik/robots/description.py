@@ -14,6 +14,7 @@ from weakref import WeakKeyDictionary
 
 import pinocchio as pin
 
+from pin_metaik.arguments import checked, checked_as
 from pin_metaik.errors import InvalidModel
 from pin_metaik.robots import plausible
 from pin_metaik.robots.couplings import NO_COUPLINGS, coupled, make_ready, read_couplings, with_own_names
@@ -32,6 +33,7 @@ _CARRY_NUMBERS = ("link", "joint", "origin", "axis", "limit", "parent", "child",
 _NOT_READ = ("equality", "include")  # of MJCF
 
 
+@checked_as(InvalidModel)
 @dataclass(frozen=True)
 class Description:
     """What a model is made from: plain values, so that a process that gets them makes the same model again.
@@ -181,6 +183,7 @@ class Description:
 _MADE_FROM: WeakKeyDictionary[pin.Model, Description] = WeakKeyDictionary()
 
 
+@checked
 def description_of(model: pin.Model) -> Description | None:
     """What a model was made from, or None if it is not one of ``Description.model``."""
     return _MADE_FROM.get(model)

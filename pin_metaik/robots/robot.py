@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
 
 import pinocchio as pin
 
+from pin_metaik.arguments import checked_as
 from pin_metaik.errors import InvalidModel, InvalidTable, UnknownName
 from pin_metaik.robots.description import Base, Description
 from pin_metaik.robots.library import LEFT_OUT, TIPS, catalogue, example_robots
@@ -71,6 +72,10 @@ class Robot:
         """
         return self._geometry("visual")
 
+    def __getstate__(self) -> dict[str, object]:
+        """Pickle without the geometry: megabytes, read again on first use."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
+
     @property
     def free_mimics(self) -> tuple[str, ...]:
         """Joints that should follow another one by the URDF, but are free in the model."""
@@ -121,6 +126,7 @@ def robot_names() -> list[RobotName]:
     return [RobotName(robot.name, source, robot.model.nv, robot.frame) for robot, source in loaded]
 
 
+@checked_as(InvalidModel)
 def load_robot(
     name: str | Path | RobotName,
     *,

@@ -11,11 +11,12 @@ mechanism.survey().gdi
 stewart.design(mechanism).mechanism
 """
 
+from pin_metaik.stewart.assemblies import Assemblies, all_forward
 from pin_metaik.stewart.closure import ClosedModel, closed_model
 from pin_metaik.stewart.conditioning import Dexterity, best_length, characteristic_length, conditioning
 from pin_metaik.stewart.design import Designed, design
 from pin_metaik.stewart.fitness import Fitness, Score
-from pin_metaik.stewart.forward import Forward, ForwardStatus, all_forward, forward
+from pin_metaik.stewart.forward import Forward, ForwardStatus, forward
 from pin_metaik.stewart.geometry import Geometry, legs_of
 from pin_metaik.stewart.grid import Grid
 from pin_metaik.stewart.interference import leg_distances
@@ -40,6 +41,7 @@ from pin_metaik.stewart.writing import save_mechanism, to_toml
 
 __all__ = [
     "NAMED",
+    "Assemblies",
     "ClosedModel",
     "Crossing",
     "DesignTask",

@@ -40,7 +40,7 @@ class Body:
 def body_of(workspace: Workspace, scale: float, unit: str) -> Body:
     """The body of a workspace; ``scale`` turns m into the unit that is shown."""
     cells, reached = workspace.cells, workspace.reached
-    if reached.shape[:3] == (1, 1, 1) and len(cells.rpy) > 1:
+    if workspace.at_one_position:
         rpy = np.degrees(cells.rpy.reshape(*cells.steps, 3))
         angles = [rpy[:, 0, 0, 0], rpy[0, :, 0, 1], rpy[0, 0, :, 2]]
         share = f"{100 * reached.mean():.0f} % of the orientations at one position"
@@ -70,7 +70,7 @@ def draw_body(figure: Any, axes: Any, body: Body) -> None:
     corners = faces.reshape(-1, 3)
     for name, low, high in zip("xyz", corners.min(axis=0), corners.max(axis=0), strict=True):
         getattr(axes, f"set_{name}lim")(low, high)
-    figure.colorbar(colour, ax=axes, shrink=0.62, pad=0.12).set_label("nu")
+    figure.colorbar(colour, ax=axes, shrink=0.62, pad=0.12).set_label("local dexterity nu (1: isotropic, 0: singular)")
 
 
 def polygons(corners: Any, **style: Any) -> Any:

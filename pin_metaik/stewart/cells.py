@@ -1,22 +1,21 @@
-"""A grid with its ranges settled: the poses to look at, for a platform whose legs reach so far."""
+"""A grid with its ranges settled: the poses to look at, within the box of what a platform's limits leave."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pin_metaik.kinematics.pose import rpy_matrix
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.geometry import Geometry
-from pin_metaik.stewart.grid import Grid, Range
+from pin_metaik.stewart.grid import Grid
 from pin_metaik.stewart.limits import LegLimits
-from pin_metaik.stewart.loading import load_kernels
+from pin_metaik.stewart.loading import load_bounds
 
-COLUMNS = np.linspace(0.0, 1.0, 48)
-"""Where columns stand along x and y, when looking for how far the legs reach, as shares of the range."""
+COVER = 12
+"""Cells along each axis of the covers that find the room which joints and the distance between legs leave."""
+SHRINKS = 0.9
+"""A box is covered again if it shrank to less than this share along any axis."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +27,7 @@ class Cells:
         ys: Along y (ny,).
         zs: Along z (nz,).
         rpy: Orientations, rad (o, 3), roll outermost.
+        rotations: Their rotation matrices (o, 3, 3).
         steps: How many of them in roll, pitch and yaw.
         volume: Of one cell, m^3.
     """
@@ -36,6 +36,7 @@ class Cells:
     ys: Array
     zs: Array
     rpy: Array
+    rotations: Array
     steps: tuple[int, int, int]
     volume: float
 
@@ -45,61 +46,99 @@ class Cells:
         return len(self.xs), len(self.ys), len(self.zs), len(self.rpy)
 
     @property
-    def rotations(self) -> Array:
-        """Rotation matrices (o, 3, 3)."""
-        return np.array([rpy_matrix(*rpy) for rpy in self.rpy])
+    def places(self) -> int:
+        """How many positions."""
+        return len(self.xs) * len(self.ys) * len(self.zs)
+
+    @property
+    def poses(self) -> int:
+        """How many poses: positions, each in every orientation."""
+        return self.places * len(self.rpy)
 
 
 def cells_of(grid: Grid, geometry: Geometry, limits: LegLimits) -> Cells:
-    """The cells of a grid; ranges left open become as wide as these legs reach."""
-    turns = zip((grid.roll, grid.pitch, grid.yaw), grid.steps, strict=True)
-    rpy = np.array(list(product(*(_steps(ends, steps) for ends, steps in turns))))
-    x, y, z = grid.x, grid.y, grid.z
-    if x is None or y is None or z is None:
-        R = np.array([rpy_matrix(*angles) for angles in rpy])
-        x, y, z = _reach(grid, geometry, limits, np.ascontiguousarray(geometry.m @ R.transpose(0, 2, 1)))
-    (xs, dx), (ys, dy), (zs, dz) = (_centres(*axis) for axis in zip((x, y, z), grid.counts, strict=True))
-    return Cells(xs, ys, zs, rpy, grid.steps, dx * dy * dz)
+    """The cells of a grid; ranges left open become as wide as the limits leave P room.
+
+    Where they leave it none, as wide as the longest legs could sweep: every pose will be found to be forbidden.
+    """
+    given = (grid.x, grid.y, grid.z)
+    if all(ends is not None for ends in given):
+        return _laid(grid, np.array(given, dtype=float).T, grid.counts)
+    box = room(grid, geometry, limits)
+    box = _sweep(grid, geometry, limits) if box is None else box
+    for axis, ends in enumerate(given):
+        if ends is not None:
+            box[:, axis] = ends
+    return _laid(grid, box, grid.counts)
 
 
-def _steps(ends: Range, steps: int) -> list[float]:
-    """Angles from end to end; a single one is the middle."""
-    return np.linspace(*ends, steps).tolist() if steps > 1 else [0.5 * (ends[0] + ends[1])]
+def finer_cells(grid: Grid, box: Array, volume: float) -> Cells:
+    """Cells of at most this volume (m^3), and no fewer than the grid's, over the part of it within a box (2, 3).
+
+    An axis with a single cell keeps it.
+    """
+    free = np.array(grid.counts) > 1
+    part = box.copy()
+    for axis, ends in enumerate((grid.x, grid.y, grid.z)):
+        if ends is not None and not free[axis]:
+            part[:, axis] = ends
+    size = float(np.prod(part[1] - part[0])) / float(np.prod(grid.counts))
+    factor = max(1.0, size / volume) ** (1.0 / max(int(free.sum()), 1))
+    counts = np.where(free, np.ceil(np.array(grid.counts) * factor), 1).astype(int)
+    return _laid(grid, part, (int(counts[0]), int(counts[1]), int(counts[2])))
 
 
-def _centres(ends: Range, count: int) -> tuple[Array, float]:
+def room(grid: Grid, geometry: Geometry, limits: LegLimits) -> Array | None:
+    """A box (2, 3) that holds every position within the limits, in any orientation of the grid and within its ranges.
+
+    With the lengths of the legs alone it is exact. None: there is no such position, proved but for rounding.
+    """
+    R = grid.rotations
+    turned = np.ascontiguousarray(geometry.m @ R.transpose(0, 2, 1))  # (o, n, 3)
+    spheres = geometry.b - turned
+    bounds, box = load_bounds(), np.empty((2, 3))
+    bounds.reach(spheres, limits.array, _ends(grid, spheres), box)
+    if (box[0] > box[1]).any():
+        return None
+    if not limits.beyond_lengths:
+        return box
+    base, _, pairs = geometry.arrays
+    sockets = limits.sockets(geometry)
+    turned_sockets = np.ascontiguousarray(sockets[1] @ R.transpose(0, 2, 1))
+    counts = np.full(3, COVER)
+    while True:
+        part = np.empty((2, 3))
+        if not bounds.cover(base, turned, sockets, turned_sockets, limits.array, pairs, box, counts, part):
+            return None
+        if (np.ptp(part, axis=0) >= SHRINKS * np.ptp(box, axis=0)).all():
+            return part
+        box = part
+
+
+def _laid(grid: Grid, box: Array, counts: tuple[int, int, int]) -> Cells:
+    (xs, dx), (ys, dy), (zs, dz) = (_centres(low, high, n) for low, high, n in zip(*box, counts, strict=True))
+    return Cells(xs, ys, zs, grid.rpy, grid.rotations, grid.steps, float(dx * dy * dz))
+
+
+def _centres(low: float, high: float, count: int) -> tuple[Array, float]:
     """Centres (count,) of the equal parts of a range, and their size."""
-    size = (ends[1] - ends[0]) / count
-    centres: Array = ends[0] + (np.arange(count, dtype=float) + 0.5) * size
+    size = (high - low) / count
+    centres: Array = low + (np.arange(count, dtype=float) + 0.5) * size
     return centres, size
 
 
-def _reach(grid: Grid, geometry: Geometry, limits: LegLimits, turned: Array) -> tuple[Range, Range, Range]:
-    """How far the lengths of the legs let P go, in any of the orientations with R m_i ``turned`` (o, n, 3).
+def _ends(grid: Grid, spheres: Array) -> Array:
+    """The ranges (2, 3) of a grid; open ones are infinite, but for the platform's joints being above the base's."""
+    ends = np.array([(-np.inf, np.inf) if given is None else given for given in (grid.x, grid.y, grid.z)]).T.copy()
+    if grid.z is None:
+        ends[0, 2] = spheres[..., 2].max(axis=1).min()
+    return ends
 
-    P stays within ``longest`` of every b_i - R m_i. Inside that box the legs leave an interval of height above every
-    point of the base; the box is drawn round these, with one column to spare. Ranges given stay as they are.
-    """
-    spheres = geometry.b - turned  # (o, n, 3)
+
+def _sweep(grid: Grid, geometry: Geometry, limits: LegLimits) -> Array:
+    """The box (2, 3) of P within ``longest`` of every b_i - R m_i, or of the middle of these where there is none."""
+    spheres = geometry.b - geometry.m @ grid.rotations.transpose(0, 2, 1)  # (o, n, 3)
     low = (spheres.max(axis=1) - limits.longest).min(axis=0)
     high = np.maximum((spheres.min(axis=1) + limits.longest).max(axis=0), low)
-    floor = float(spheres[..., 2].max(axis=1).min())  # platform joints above base joints
-    x, y = grid.x or (float(low[0]), float(high[0])), grid.y or (float(low[1]), float(high[1]))
-    xs, ys = (ends[0] + (ends[1] - ends[0]) * COLUMNS for ends in (x, y))
-    bottoms, tops = np.empty((len(xs), len(ys))), np.empty((len(xs), len(ys)))
-    load_kernels().heights(geometry.arrays[0], turned, xs, ys, limits.shortest, limits.longest, bottoms, tops)
-    open_: NDArray[np.bool_] = bottoms <= tops
-    if not open_.any():
-        return x, y, grid.z or (floor, max(floor, float(high[2])))
-    step = max(float(xs[1] - xs[0]), float(ys[1] - ys[0]))
-    return (
-        grid.x or _trim(xs, np.asarray(open_.any(axis=1))),
-        grid.y or _trim(ys, np.asarray(open_.any(axis=0))),
-        grid.z or (max(float(bottoms.min()) - step, floor), float(tops.max()) + step),
-    )
-
-
-def _trim(axis: Array, open_: NDArray[np.bool_]) -> Range:
-    """The part of an axis that is open, and one step to either side."""
-    inside = np.flatnonzero(open_)
-    return float(axis[max(inside[0] - 1, 0)]), float(axis[min(inside[-1] + 1, len(axis) - 1)])
+    low[2] = _ends(grid, spheres)[0, 2]
+    return np.array([low, np.maximum(high, low)])

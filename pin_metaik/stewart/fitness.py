@@ -6,19 +6,25 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.space import Array
-from pin_metaik.stewart.cells import cells_of
 from pin_metaik.stewart.geometry import Geometry, chords
 from pin_metaik.stewart.limits import LegLimits, PoseState
 from pin_metaik.stewart.mechanism import Mechanism
 from pin_metaik.stewart.ranges import Dimensions, Variables
-from pin_metaik.stewart.surveying import judge_cells, with_best_length
+from pin_metaik.stewart.surveying import explored, with_best_length
 from pin_metaik.stewart.task import DesignTask
 from pin_metaik.stewart.workspace import Workspace
 
 UNUSABLE = 1.0  # cost of a singular, small or empty workspace, before counting how much of it is; others cost at most 0
 UNBUILDABLE = 3.0  # cost of legs or joints that are in each other's way, before counting by how much
+CELLS = 150
+"""Cells that must be reached for a design to be compared by them: they measure a volume to a few percent."""
+FINE_CELLS = 2000
+"""Cells by which a design is measured before it counts as the best: a volume is good to a percent."""
+POSES, FINE_POSES = 300_000, 4_000_000
+"""Poses of the finest grids that are laid for these."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +42,7 @@ class Score:
     workspace: float
 
 
+@checked
 class Fitness:
     """The objective of a design: costs (k,) of points (k, v); the cost of a feasible design is minus its fitness.
 
@@ -59,21 +66,31 @@ class Fitness:
 
     def __call__(self, X: Array) -> Array:
         """Costs (k,) of the designs at points X (k, v)."""
-        return np.array([self.cost(x) for x in X])
+        return np.array([self.cost(x) for x in array("X", X, "k", self.variables.box.dimension)])
 
-    def cost(self, x: Array) -> float:
-        """Minus the fitness; 1 ... 2 for a workspace of no use, 2 if it is empty, more for what cannot be built."""
-        dimensions = self.variables.dimensions(x)
+    def cost(self, x: Array, *, fine: bool = False) -> float:
+        """Minus the fitness; 1 ... 2 for a workspace of no use, 2 if it is empty, more for what cannot be built.
+
+        A workspace so thin that its grid cannot be made fine enough to measure it is of no use.
+
+        Args:
+            x: The design (v,).
+            fine: Whether to measure its workspace by a few thousand cells instead of a few hundred.
+        """
+        dimensions = self.variables.dimensions(array("x", x, self.variables.box.dimension))
         if missing := self.missing(dimensions):
             return UNBUILDABLE + missing / self.cube
-        workspace = self.workspace(*self.build(dimensions))
+        workspace = self.workspace(*self.build(dimensions), fine=fine)
         if not workspace.regular.any():
             return UNUSABLE + 1.0
         if (wrong := _wrong_side(workspace)) > 0.0:
             return UNUSABLE + wrong
+        if max(workspace.cells.shape[:3]) > 1 and workspace.cells_reached < CELLS:
+            return UNUSABLE + 1.0 - workspace.cells_reached / CELLS
         score, least = self.score(workspace), self.task.least_workspace
         return UNUSABLE + 1.0 - score.workspace / least if score.workspace < least else -score.fitness
 
+    @checked
     def missing(self, dimensions: Dimensions) -> float:
         """How much length is missing for the joints to keep their gap and the legs to extend, m; 0 if none."""
         gaps = np.concatenate(
@@ -85,6 +102,7 @@ class Fitness:
         short = np.maximum(self.task.joint_gap - gaps, 0.0).sum() + max(dimensions.shortest - dimensions.longest, 0.0)
         return float(short) if gaps.min() > 0.0 else float(short) + self.cube
 
+    @checked
     def build(self, dimensions: Dimensions) -> tuple[Geometry, LegLimits]:
         """The platform with these dimensions.
 
@@ -100,15 +118,17 @@ class Fitness:
         )
         return geometry, replace(self.mechanism.limits, shortest=dimensions.shortest, longest=dimensions.longest)
 
-    def workspace(self, geometry: Geometry, limits: LegLimits) -> Workspace:
-        """The workspace on the task's grid; unlike that of ``survey`` it may be empty."""
-        dexterity = self.mechanism.dexterity
-        cells = cells_of(self.task.grid, geometry, limits)
-        states, nu = np.empty(cells.shape, dtype=np.int8), np.empty(cells.shape)
-        length = dexterity.length if not isinstance(dexterity.length, str) else geometry.platform_radius
-        judge_cells(geometry, limits, cells, length, dexterity, states, nu)
-        return with_best_length(Workspace(geometry, limits, cells, dexterity, length, states, nu))
+    @checked
+    def workspace(self, geometry: Geometry, limits: LegLimits, *, fine: bool = False) -> Workspace:
+        """The workspace on the task's grid, or on a finer one within its ranges where too few of its cells are reached.
 
+        Unlike that of ``survey`` it may be empty.
+        """
+        least, most = (FINE_CELLS, FINE_POSES) if fine else (CELLS, POSES)
+        found, _ = explored(geometry, limits, self.task.grid, self.mechanism.dexterity, least, most)
+        return with_best_length(found)
+
+    @checked
     def score(self, workspace: Workspace) -> Score:
         """The fitness of a workspace that is not singular, and its two parts."""
         counted = workspace.reached

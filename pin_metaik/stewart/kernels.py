@@ -1,4 +1,4 @@
-"""The compiled loops: poses judged against the limits and measured, distances between legs, how far they reach.
+"""The compiled loops: poses judged against the limits and measured, and distances between legs.
 
 Arrays every kernel takes (made by ``Geometry`` and ``LegLimits``; n legs):
 
@@ -338,28 +338,3 @@ def distances(base: Floats, arms: Floats, pairs: Ints, poses: Floats, out: Float
                 legs[i, c] += poses[k, c, 3] - base[i, c]
         for p in range(pairs.shape[0]):
             out[k, p] = segment_distance(base, legs, pairs[p, 0], pairs[p, 1])
-
-
-@jit("void(f8[:,::1], f8[:,:,::1], f8[::1], f8[::1], f8, f8, f8[:,::1], f8[:,::1])")
-def heights(
-    base: Floats, turned: Floats, xs: Floats, ys: Floats, shortest: float, longest: float, low: Floats, high: Floats
-) -> None:
-    """Least and greatest height (x, y) that the legs' lengths allow P above each point of the base, in any orientation.
-
-    Where they allow none, low > high. In one orientation the platform's joints above the base's leave one interval.
-    """
-    for ix in range(xs.shape[0]):
-        for iy in range(ys.shape[0]):
-            low[ix, iy], high[ix, iy] = math.inf, -math.inf
-            for o in range(turned.shape[0]):
-                bottom, top = -math.inf, math.inf
-                for i in range(base.shape[0]):
-                    x, y = xs[ix] + turned[o, i, 0] - base[i, 0], ys[iy] + turned[o, i, 1] - base[i, 1]
-                    across, rise = x * x + y * y, turned[o, i, 2] - base[i, 2]
-                    if across > longest * longest:
-                        top = -math.inf
-                        break
-                    bottom = max(bottom, math.sqrt(max(shortest * shortest - across, 0.0)) - rise)
-                    top = min(top, math.sqrt(longest * longest - across) - rise)
-                if bottom <= top:
-                    low[ix, iy], high[ix, iy] = min(low[ix, iy], bottom), max(high[ix, iy], top)

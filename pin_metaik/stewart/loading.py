@@ -15,8 +15,24 @@ def load_kernels() -> ModuleType:
 
 
 @cache
+def load_bounds() -> ModuleType:
+    """The loops that bound a workspace, likewise."""
+    from pin_metaik.stewart import bounds
+
+    return bounds
+
+
+@cache
 def load_newton() -> ModuleType:
     """The loop of forward kinematics, likewise."""
     from pin_metaik.stewart import newton
 
     return newton
+
+
+@cache
+def load_homotopy() -> ModuleType:
+    """The loop that follows complex assemblies, likewise."""
+    from pin_metaik.stewart import homotopy
+
+    return homotopy

@@ -2,29 +2,62 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pin_metaik.errors import MissingExtra
+from pin_metaik.arguments import checked, instance
+from pin_metaik.errors import InvalidSetting, MissingExtra
 from pin_metaik.optimize.space import Array
+from pin_metaik.output import writable
 from pin_metaik.stewart.body import body_of, draw_body, polygons
 from pin_metaik.stewart.design import Designed
 from pin_metaik.stewart.geometry import on_circle
 from pin_metaik.stewart.inverse import leg_vectors
 from pin_metaik.stewart.mechanism import Mechanism
-from pin_metaik.stewart.poses import PoseLike, as_poses, pose_at
+from pin_metaik.stewart.poses import PoseLike, one_pose, pose_at
 from pin_metaik.stewart.workspace import Workspace
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+FORMATS = (".png", ".svg", ".pdf")
 STEEL, PLATE, ROD = "#4a4f57", "#e07b1a", "#2f6fb0"
 TAG = {"boxstyle": "circle,pad=0.15", "facecolor": "white", "edgecolor": STEEL, "linewidth": 0.6}
+FLATTEST = 0.2  # of the longest side: what is drawn flatter than that has no room for its numbers
 VIEW = {"elev": 18.0, "azim": -60.0}
 
 
+def need_plots() -> None:
+    """Make sure that pictures can be drawn, before anything is worked out for one.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+    """
+    try:
+        import matplotlib.figure  # noqa: F401  # asked for, not used
+    except ImportError:
+        raise MissingExtra("a picture", "plots") from None
+
+
+@checked
+def picture_file(path: str | Path) -> Path:
+    """The path of a picture that can be written, before anything is worked out for it.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+        InvalidSetting: Its ending is none of a picture.
+        CannotWrite: It cannot be written.
+    """
+    need_plots()
+    if Path(path).suffix.lower() not in FORMATS:
+        raise InvalidSetting(f"a picture ends in {', '.join(FORMATS)}, got {str(path)!r}")
+    return writable(path)
+
+
+@checked
 def draw(mechanism: Mechanism, workspace: Workspace | None = None, pose: PoseLike | None = None) -> Figure:
     """A picture of a mechanism, and beside it of its workspace; see ``draw_into``.
 
@@ -37,6 +70,7 @@ def draw(mechanism: Mechanism, workspace: Workspace | None = None, pose: PoseLik
     return figure
 
 
+@checked
 def draw_into(
     figure: Figure, mechanism: Mechanism, workspace: Workspace | None = None, pose: PoseLike | None = None
 ) -> None:
@@ -51,9 +85,10 @@ def draw_into(
     Raises:
         InvalidTarget: Not a pose.
     """
+    _need_figure(figure)
     unit = mechanism.unit
     scale = 1.0 / mechanism.metres
-    T = as_poses(_middle(mechanism, workspace) if pose is None else pose)[0]
+    T = one_pose(_middle(mechanism, workspace) if pose is None else pose)
     axes = figure.add_subplot(1, 2 if workspace is not None else 1, 1, projection="3d")
     _mechanism(axes, mechanism, T, scale)
     axes.set_title(f"{mechanism.name} ({mechanism.geometry.type})", fontsize=11)
@@ -67,6 +102,7 @@ def draw_into(
         _dress(axes, body.labels)
 
 
+@checked
 def draw_history(designed: Designed) -> Figure:
     """Best fitness over designs looked at.
 
@@ -85,18 +121,32 @@ def draw_history(designed: Designed) -> Figure:
     return figure
 
 
+@checked
 def save_picture(figure: Figure, path: str | Path) -> Path:
-    """Write a figure to a file; the ending says the format (.png, .svg, .pdf)."""
-    path = Path(path)
+    """Write a figure to a file; the ending says the format (.png, .svg, .pdf).
+
+    Raises:
+        InvalidSetting: Its ending is none of a picture.
+        CannotWrite: It cannot be written.
+    """
+    _need_figure(figure)
+    path = picture_file(path)
     figure.savefig(path, dpi=130)
     return path
 
 
+def _need_figure(figure: object) -> None:
+    """Raise InvalidSetting for what is no figure of matplotlib's; without matplotlib there is none."""
+    need_plots()
+    from matplotlib.figure import Figure
+
+    instance(Figure, figure=figure)
+
+
 def _figure(size: tuple[float, float]) -> Figure:
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtra("a picture", "plots") from None
+    need_plots()
+    from matplotlib.figure import Figure
+
     return Figure(figsize=size, layout="constrained")
 
 
@@ -131,8 +181,16 @@ def _mechanism(axes: Any, mechanism: Mechanism, T: Array, scale: float) -> None:
         axes.scatter(*(scale * joints).T, color=colour, s=26, depthshade=False)
         for k, joint in enumerate(joints, start=1):
             outward = joint - joints.mean(axis=0)
-            place = joint + aside * outward / np.linalg.norm(outward) + [0.0, 0.0, 0.6 * aside if name == "M" else 0.0]
-            axes.text(*(scale * place), f"{name}{k}", fontsize=9, color=colour, ha="center", fontweight="bold")
+            away = aside * outward / max(float(np.linalg.norm(outward)), 1e-12)
+            place = joint + away + [0.0, 0.0, 0.6 * aside if name == "M" else -0.6 * aside]
+            label = axes.text(*(scale * place), f"{name}{k}", fontsize=9, color=colour, fontweight="bold", zorder=30)
+            label.set(ha="center", va="center", path_effects=_halo())
+
+
+def _halo() -> list[Any]:
+    """A white edge round letters, so that what is behind them does not hide them."""
+    effects = import_module("matplotlib.patheffects")
+    return [effects.withStroke(linewidth=2.5, foreground="white")]
 
 
 def _plate(axes: Any, corners: Array, colour: str) -> None:
@@ -140,8 +198,10 @@ def _plate(axes: Any, corners: Array, colour: str) -> None:
 
 
 def _dress(axes: Any, labels: tuple[str, ...]) -> None:
-    for name, label in zip("xyz", labels, strict=True):
+    extents = np.array([np.ptp(getattr(axes, f"get_{name}lim")()) for name in "xyz"])
+    for name, label, extent in zip("xyz", labels, extents, strict=True):
         getattr(axes, f"set_{name}label")(label, fontsize=9)
+        axes.locator_params(axis=name, nbins=5 if extent > 0.4 * extents.max() else 3)
     axes.tick_params(labelsize=8)
-    axes.set_box_aspect([np.ptp(getattr(axes, f"get_{name}lim")()) for name in "xyz"], zoom=0.92)
+    axes.set_box_aspect(np.maximum(extents, FLATTEST * extents.max()), zoom=0.9)
     axes.view_init(**VIEW)

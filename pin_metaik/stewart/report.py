@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from math import degrees, pi
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from pin_metaik.stewart.conditioning import conditioning
 from pin_metaik.stewart.design import Designed
+from pin_metaik.stewart.geometry import MOST_LEGS
 from pin_metaik.stewart.interference import leg_distances
 from pin_metaik.stewart.inverse import leg_lengths
+from pin_metaik.stewart.jacobian import jacobian
 from pin_metaik.stewart.limits import PoseState
 from pin_metaik.stewart.mechanism import Mechanism
 from pin_metaik.stewart.poses import PoseLike, as_poses
 from pin_metaik.stewart.singularity import crossings, singularities
+from pin_metaik.stewart.surveying import LEAST
 from pin_metaik.stewart.trajectory import Trajectory, follow, judge_poses
 from pin_metaik.stewart.workspace import Workspace
 
@@ -49,18 +52,46 @@ def describe(mechanism: Mechanism) -> Lines:
     return lines
 
 
+def notes(mechanism: Mechanism, workspace: Workspace | None = None) -> list[str]:
+    """What a reader of the figures should know before believing them."""
+    geometry, limits = mechanism.geometry, mechanism.limits
+    said = []
+    if geometry.n < MOST_LEGS:
+        free = MOST_LEGS - geometry.n
+        said.append(
+            f"{geometry.n} legs between universal and spherical joints leave the platform {free} "
+            f"freedom{'s' if free > 1 else ''}: they do not hold it, and dexterity says only how they act on it"
+        )
+    if limits.stroke > limits.shortest:
+        said.append(
+            f"a stroke of {in_unit(mechanism, limits.stroke)} does not fit into a leg that is "
+            f"{in_unit(mechanism, limits.shortest)} long when retracted, unless it telescopes in several stages"
+        )
+    if workspace is None:
+        return said
+    if not workspace.complete:
+        said.append("interrupted: the figures are about the poses seen until then")
+    if max(workspace.cells.shape[:3]) > 1 and workspace.cells_reached < LEAST:
+        said.append(f"only {workspace.cells_reached} cells carry the figures: they are rough; use a finer grid")
+    return said
+
+
 def assess(mechanism: Mechanism, workspace: Workspace) -> Lines:
     """Its workspace: volume, dexterity, singularities, and what limits it."""
     found = singularities(workspace)
     lines = [("verdict", str(workspace.verdict))]
-    if not workspace.complete:
-        lines.append(("PARTIAL", "interrupted: what follows is about the poses seen until then"))
-    lines.append(("volume", f"{1e6 * workspace.volume:.5g} cm3"))
-    if len(workspace.cells.rpy) > 1:
-        lines.append(("in every orientation", f"{1e6 * workspace.volume_of_all:.5g} cm3"))
+    lines += [("PARTIAL" if not workspace.complete else "note", text) for text in notes(mechanism, workspace)]
+    cells = workspace.cells
+    if workspace.at_one_position:
+        share = f"{100 * workspace.reached.mean():.4g} % of {len(cells.rpy)}"
+        lines.append(("orientations", f"{share} at {in_unit(mechanism, workspace.positions[0])} are reached"))
+    else:
+        lines.append(("volume", f"{1e6 * workspace.volume:.5g} cm3, of {workspace.cells_reached} cells"))
+        if len(cells.rpy) > 1:
+            lines.append(("in every orientation", f"{1e6 * workspace.volume_of_all:.5g} cm3"))
     gdi = "none: every pose reached is singular" if workspace.gdi is None else f"{workspace.gdi:.4f}"
     norm = f"{mechanism.dexterity.norm} norm, L = {in_unit(mechanism, workspace.length)}"
-    lines.append(("GDI", f"{gdi} ({norm})"))
+    lines.append(("GDI", f"{gdi}, the mean dexterity nu = 1 / condition number ({norm})"))
     lines.append(("lowest nu", f"{found.nu:.4g} at {in_unit(mechanism, found.nearest[:3, 3])}"))
     if len(found.poses) or len(found.crossings):
         lines.append(("singular poses", f"{len(found.poses)}, left out of the GDI"))
@@ -73,17 +104,15 @@ def assess(mechanism: Mechanism, workspace: Workspace) -> Lines:
 
 def at_pose(mechanism: Mechanism, pose: PoseLike) -> Lines:
     """The legs at one pose."""
-    T = as_poses(pose)
-    state = PoseState(int(judge_poses(mechanism.geometry, mechanism.limits, T)[0]))
+    found = pose_values(mechanism, pose)
     lines = [
-        ("leg lengths", in_unit(mechanism, leg_lengths(mechanism.geometry, T))),
-        ("pose is", state.words),
-        ("nu", f"{conditioning(mechanism.geometry, T[0], mechanism.dexterity):.6f}"),
+        ("leg lengths", in_unit(mechanism, found["leg_lengths"])),
+        ("pose is", PoseState[found["state"].upper()].words),
+        ("dexterity nu", f"{found['nu']:.6f}"),
     ]
-    distances = leg_distances(mechanism.geometry, T)[0]
-    if len(distances):
-        i, j = mechanism.geometry.pairs[distances.argmin()] + 1
-        lines.append(("nearest legs", f"{i} and {j}, {in_unit(mechanism, distances.min())} apart"))
+    if found["nearest_legs"] is not None:
+        i, j = found["nearest_legs"]
+        lines.append(("nearest legs", f"{i} and {j}, {in_unit(mechanism, found['leg_distance'])} apart"))
     return lines
 
 
@@ -119,16 +148,19 @@ def outcome(designed: Designed) -> Lines:
     return [*lines, ("fitness", f"{score.fitness:.4f}: {parts}")]
 
 
-def values(mechanism: Mechanism, workspace: Workspace) -> dict[str, object]:
+def values(mechanism: Mechanism, workspace: Workspace) -> dict[str, Any]:
     """A workspace as plain values in m and rad, for JSON; ``gdi`` is null for a singular mechanism."""
     found = singularities(workspace)
     return {
         "name": mechanism.name,
         "type": mechanism.geometry.type,
         "verdict": str(workspace.verdict),
+        "notes": notes(mechanism, workspace),
         "complete": workspace.complete,
         "volume": workspace.volume,
         "volume_in_every_orientation": workspace.volume_of_all,
+        "cells_reached": workspace.cells_reached,
+        "share_reached": float(workspace.reached.mean()),
         "gdi": workspace.gdi,
         "norm": mechanism.dexterity.norm,
         "characteristic_length": workspace.length,
@@ -136,4 +168,39 @@ def values(mechanism: Mechanism, workspace: Workspace) -> dict[str, object]:
         "singular_poses": len(found.poses),
         "sign_changes": len(found.crossings),
         "poses": {state.name.lower(): count for state, count in workspace.counts.items()},
+    }
+
+
+def pose_values(mechanism: Mechanism, pose: PoseLike) -> dict[str, Any]:
+    """One pose as plain values in m and rad: its legs, what it is to the limits, its dexterity and Jacobian."""
+    geometry = mechanism.geometry
+    T = as_poses(pose)
+    state = PoseState(int(judge_poses(geometry, mechanism.limits, T)[0]))
+    distances = leg_distances(geometry, T)[0]
+    nearest = (geometry.pairs[distances.argmin()] + 1).tolist() if len(distances) else None
+    return {
+        "pose": T[0].tolist(),
+        "leg_lengths": leg_lengths(geometry, T)[0].tolist(),
+        "state": state.name.lower(),
+        "reached": state.reached,
+        "nu": float(conditioning(geometry, T[0], mechanism.dexterity)),
+        "jacobian": jacobian(geometry, T[0]).tolist(),
+        "nearest_legs": nearest,
+        "leg_distance": float(distances.min()) if len(distances) else None,
+    }
+
+
+def way_values(mechanism: Mechanism, way: Trajectory) -> dict[str, Any]:
+    """A trajectory as plain values in m, s and rad: the legs over time, limits, dexterity, and singular poses."""
+    motion = follow(mechanism.geometry, way, mechanism.limits, mechanism.dexterity)
+    met = crossings(mechanism.geometry, way)
+    return {
+        "times": way.times.tolist(),
+        "poses": way.poses.tolist(),
+        "leg_lengths": motion.lengths.tolist(),
+        "leg_rates": motion.rates.tolist(),
+        "nu": motion.nu.tolist(),
+        "states": [PoseState(int(state)).name.lower() for state in motion.states],
+        "reached": bool(motion.reached.all()),
+        "singular": [{"time": c.time, "pose": c.pose.tolist(), "sign_changes": c.crosses} for c in met],
     }

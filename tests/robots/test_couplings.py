@@ -2,6 +2,7 @@
 
 import itertools
 import pickle
+import xml.etree.ElementTree as ET
 
 import numpy as np
 import pinocchio as pin
@@ -25,6 +26,16 @@ def robot(*joints):
     return f'<robot name="r"><link name="base"/>{"".join(joints)}</robot>'
 
 
+def led(urdf, x):
+    """Coordinates of leaders that the model has as followers, from those of the joints that mimic them."""
+    tags = {joint.get("name"): joint.find("mimic") for joint in ET.fromstring(urdf).iterfind("joint[mimic]")}
+    return {
+        tag.get("joint"): (x[name] - float(tag.get("offset", 0))) / float(tag.get("multiplier", 1))
+        for name, tag in tags.items()
+        if name in x
+    }
+
+
 def assert_moves_by_the_textbook(urdf, expected_names, **settings):
     """Pinocchio places every link where the textbook does, the model's coordinates being the joints expected."""
     model = load_robot(urdf, **settings).model
@@ -37,7 +48,7 @@ def assert_moves_by_the_textbook(urdf, expected_names, **settings):
         for name, value in x.items():
             v[model.joints[model.getJointId(name)].idx_v] = value
         pin.framesForwardKinematics(model, data, pin.integrate(model, pin.neutral(model), v))
-        for link, placement in link_placements(urdf, x).items():
+        for link, placement in link_placements(urdf, x | led(urdf, x)).items():
             frame = model.getFrameId(link, pin.FrameType.BODY)
             np.testing.assert_allclose(data.oMf[frame].homogeneous, placement, atol=1e-12, err_msg=link)
     return model

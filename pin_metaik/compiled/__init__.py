@@ -1,4 +1,4 @@
-"""Compiling loops: the only file that imports numba. Import it from kernel files only, and late: it takes 0.4 s."""
+"""Compiling loops: the only folder that imports numba. Import it from kernel files only, and late: it takes 0.4 s."""
 
 from __future__ import annotations
 
@@ -13,18 +13,32 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.compiled.on_disk import MachineCode
+from pin_metaik.interrupts import Pressed
+
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
 Ints = NDArray[np.int64]
 F = TypeVar("F", bound=Callable[..., Any])
 
-# Machine code is kept on disk; other threads may run meanwhile; division by zero gives inf as in C.
-OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+# Other threads may run meanwhile; division by zero gives inf as in C.
+OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 # Sums may be taken in another order and a b + c be rounded once; infinities and NaN keep their meaning.
 LOOSE = {"contract", "reassoc", "nsz", "arcp"}
 
 WAIT = 3.0  # s; reading machine code from the cache takes a tenth of it
-NOTICE = "pin_metaik: compiling an inner loop for this machine, once; this takes ten to twenty seconds ..."
+NOTICE = "pin_metaik: compiling inner loops for this machine, once; this takes ten to sixty seconds ..."
+
+
+def kept(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Numba's dispatcher of a function, whose machine code is kept on disk."""
+
+    def dispatcher(function: Callable[..., Any]) -> Any:
+        loop = numba.njit(**options)(function)
+        loop._cache = MachineCode(function)
+        return loop
+
+    return dispatcher
 
 
 def jit(signature: str) -> Callable[[F], F]:
@@ -38,23 +52,37 @@ def jit(signature: str) -> Callable[[F], F]:
 
     def lazy(function: F) -> F:
         @cache
-        def compiled(without: bool = False) -> Callable[..., Any]:
-            notice = Timer(WAIT, lambda: print(NOTICE, file=sys.stderr, flush=True))
+        def version(without: bool) -> Callable[..., Any]:
+            notice = Timer(WAIT, _tell)
             notice.daemon = True
             notice.start()
             try:
-                return cast(Callable[..., Any], numba.njit(versions[without], fastmath=LOOSE, **OPTIONS)(function))
+                with Pressed() as pressed:
+                    loop = kept(fastmath=LOOSE, **OPTIONS)(function)
+                    loop.compile(versions[without])
+                    loop.disable_compile()
+                    pressed.check()  # LLVM calls back, and what is raised in there is dropped
+                return cast(Callable[..., Any], loop)
             finally:
                 notice.cancel()
 
         @wraps(function)
         def call(*arguments: Any) -> Any:
-            return compiled(optional is not None and arguments[optional] is None)(*arguments)
+            return version(optional is not None and arguments[optional] is None)(*arguments)
 
-        call.compiled = compiled  # type: ignore[attr-defined]  # for whoever calls so often that one more frame counts
+        def compiled(without: bool = False) -> Callable[..., Any]:
+            return version(without)
+
+        call.compiled = compiled  # type: ignore[attr-defined]  # for callers so frequent that one more frame counts
         return cast(F, call)
 
     return lazy
+
+
+@cache
+def _tell() -> None:
+    """Say, once a process, what the wait is for."""
+    print(NOTICE, file=sys.stderr, flush=True)
 
 
 def _place_of_optional(signature: str) -> int | None:
@@ -70,19 +98,19 @@ PART: dict[str, Any] = {**OPTIONS, "_nrt": False}
 
 def inline(function: F) -> F:
     """A part of a loop: compiled into each loop that calls it, with what is constant there."""
-    return cast(F, numba.njit(fastmath=LOOSE, forceinline=True, **PART)(function))
+    return cast(F, kept(fastmath=LOOSE, forceinline=True, **PART)(function))
 
 
 def shared(function: F) -> F:
     """A part that several loops call: compiled once, for all of them."""
-    return cast(F, numba.njit(fastmath=LOOSE, **PART)(function))
+    return cast(F, kept(fastmath=LOOSE, **PART)(function))
 
 
 def exact(function: F) -> F:
     """A part of a loop whose roundings must come in the order written."""
-    return cast(F, numba.njit(fastmath={"contract"}, forceinline=True, **PART)(function))
+    return cast(F, kept(fastmath={"contract"}, forceinline=True, **PART)(function))
 
 
 def allocating(function: F) -> F:
     """What makes arrays for a loop, before it begins, or returns parts of them."""
-    return cast(F, numba.njit(**OPTIONS)(function))
+    return cast(F, kept(**OPTIONS)(function))

@@ -1,0 +1,94 @@
+"""Machine code is that of the sources, wherever it can be kept or cannot."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from pin_metaik.cache_folder import cache_folder
+from pin_metaik.compiled import sources
+
+# A pose off by nothing, seen by two loops of different files, and how many of the two were compiled.
+ASK = """
+import numpy as np, pin_metaik as mik
+chain = mik.Chain(mik.load_robot("ur5").model, "tool0")
+x = np.full(6, 0.3)
+problem = mik.IKProblem.of(chain, chain.placements(chain.q(x))[0])
+cost, residual = problem.costs(x[None])[0], np.abs(problem.linearize(x)[0]).max()
+loops = [loop.compiled() for loop in (chain.kernels.costs, chain.kernels.linearize)]
+print(cost, residual, sum(sum(loop.stats.cache_misses.values()) for loop in loops))
+"""
+PART, CHANGED = "    pose[9] = px +", "    pose[9] = 0.1 + px +"
+
+
+@pytest.fixture
+def copied(tmp_path: Path) -> Path:
+    """A folder with a copy of the package and of the machine code beside it, which is complete for ``ASK``."""
+    ask(sources.PACKAGE.parent)
+    return shutil.copytree(sources.PACKAGE, tmp_path / "copy" / "pin_metaik").parent
+
+
+def ask(folder: Path, **environment: str) -> tuple[float, float, float]:
+    """What ``ASK`` prints when the package is that in ``folder``."""
+    given = {**os.environ, "PYTHONPATH": str(folder), **environment}
+    if not environment:
+        given.pop("NUMBA_CACHE_DIR", None)
+    done = subprocess.run([sys.executable, "-c", ASK], env=given, cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    cost, residual, compiled = done.stdout.split()
+    return float(cost), float(residual), int(compiled)
+
+
+def test_a_change_of_a_part_is_seen_by_every_loop_that_has_it(copied: Path) -> None:
+    *exact, compiled = ask(copied)
+    assert max(exact) < 1e-12 and compiled == 0
+    kernels = copied / "pin_metaik" / "kinematics" / "kernels.py"
+    text = kernels.read_text()
+    assert PART in text
+    kernels.write_text(text.replace(PART, CHANGED))
+    cost, residual, compiled = ask(copied)
+    assert cost == pytest.approx(0.1) and residual == pytest.approx(0.1) and compiled == 2
+
+
+def test_machine_code_that_lies_beside_the_package_is_used_where_nothing_can_be_written(copied: Path) -> None:
+    folders = list(copied.rglob("__pycache__"))
+    for folder in folders:
+        folder.chmod(0o555)
+    assert ask(copied, HOME=os.devnull, XDG_CACHE_HOME=os.devnull)[2] == 0
+
+
+def test_without_any_folder_to_keep_it_in_everything_is_compiled(copied: Path) -> None:
+    shutil.rmtree(copied / "pin_metaik" / "kinematics" / "__pycache__")
+    (copied / "pin_metaik" / "kinematics" / "__pycache__").touch()  # a file where the folder would be
+    nowhere = {"HOME": os.devnull, "XDG_CACHE_HOME": os.devnull, "NUMBA_CACHE_DIR": os.devnull}
+    *exact, compiled = ask(copied, **nowhere)
+    assert max(exact) < 1e-12 and compiled == 2
+
+
+def test_machine_code_that_was_cut_off_is_compiled_again(copied: Path) -> None:
+    for file in copied.rglob("*.nbc"):
+        file.write_bytes(file.read_bytes()[:100])
+    for file in copied.rglob("linearize*.nbi"):
+        file.write_bytes(b"")
+    *exact, compiled = ask(copied)
+    assert max(exact) < 1e-12 and compiled == 2
+    assert ask(copied)[2] == 0
+
+
+def test_the_digest_covers_what_loops_are_made_of() -> None:
+    assert len(sources.digest()) == 32
+
+
+def test_a_user_without_a_home_has_no_cache_folder(monkeypatch: pytest.MonkeyPatch) -> None:
+    def homeless(cls: type[Path]) -> Path:
+        raise RuntimeError("Could not determine home directory.")
+
+    for name in ("PIN_METAIK_CACHE", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(Path, "home", classmethod(homeless))
+    assert cache_folder() is None
+    monkeypatch.setenv("PIN_METAIK_CACHE", "elsewhere")
+    assert cache_folder() == Path("elsewhere")
