@@ -73,8 +73,8 @@ def _words(name: str) -> str:
 
 def _above(model: pin.Model, frame: int) -> set[int]:
     """The frames on the way from a frame to the root."""
-    way = set()
-    while (frame := model.frames[frame].parentFrame) > 0:
+    way: set[int] = set()
+    while (frame := model.frames[frame].parentFrame) > 0 and frame not in way:  # some models' frames name themselves
         way.add(frame)
     return way
 
