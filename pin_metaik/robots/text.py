@@ -29,12 +29,15 @@ def read_text(path: Path) -> str:
     """Text of a robot's file, in any encoding that it declares or shows.
 
     Raises:
-        InvalidModel: If there is no such file, or it cannot be read.
+        InvalidModel: If there is no such file, it cannot be read, or is not text.
     """
     try:
-        return decoded(path.read_bytes())
+        text = decoded(path.read_bytes())
     except OSError as error:
         raise InvalidModel(f"cannot read {path}: {error.strerror}") from None
+    if "\0" in text:
+        raise InvalidModel(f"{path} is not a URDF: it is not text")
+    return text
 
 
 def decoded(content: bytes) -> str:
