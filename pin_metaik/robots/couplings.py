@@ -46,13 +46,13 @@ class Couplings:
         kinds: Type of each joint, by name.
         followers: Couplings of followers to joints that follow none.
         constants: Position of each follower of something that does not move, by name.
-        remarks: What has to be said of tags that mean nothing: their joints stay free.
+        broken: What is wrong with each tag that means nothing, by the name of its joint, which stays free.
     """
 
     kinds: Mapping[str, str]
     followers: tuple[Coupling, ...]
     constants: Mapping[str, float]
-    remarks: tuple[str, ...]
+    broken: Mapping[str, str]
 
     @property
     def unlimited(self) -> set[str]:
@@ -69,7 +69,7 @@ class Couplings:
         return {name for group in mixed for name in group if self.kinds[name] == "continuous"}
 
 
-NO_COUPLINGS = Couplings({}, (), {}, ())
+NO_COUPLINGS = Couplings({}, (), {}, {})
 
 
 def read_couplings(robot: ET.Element, what: str) -> Couplings:
@@ -80,12 +80,12 @@ def read_couplings(robot: ET.Element, what: str) -> Couplings:
     """
     kinds = {joint.get("name", ""): joint.get("type", "") for joint in robot.iterfind("joint")}
     tags = {name: tag for name, tag in _tags(robot, what).items() if kinds[name] != "fixed"}
-    remarks = {name: wrong for name, tag in tags.items() if (wrong := _wrong(tag, kinds))}
-    tags = {name: tag for name, tag in tags.items() if name not in remarks}
+    broken = {name: wrong for name, tag in tags.items() if (wrong := _wrong(tag, kinds))}
+    tags = {name: tag for name, tag in tags.items() if name not in broken}
     for name in tags:
         if name in (circle := _way(tags, name)[1:]):
-            remarks[name] = f"joint {name!r} mimics itself" + (f" by way of {circle[0]!r}" if len(circle) > 1 else "")
-    tags = {name: tag for name, tag in tags.items() if name not in remarks}
+            broken[name] = f"joint {name!r} mimics itself" + (f" by way of {circle[0]!r}" if len(circle) > 1 else "")
+    tags = {name: tag for name, tag in tags.items() if name not in broken}
 
     followers, constants = [], {}
     for name in tags:
@@ -98,7 +98,7 @@ def read_couplings(robot: ET.Element, what: str) -> Couplings:
             constants[name] = offset
         else:
             followers.append(Coupling(name, leader, multiplier, offset))
-    return Couplings(kinds, tuple(followers), constants, tuple(f"{wrong}: it is free" for wrong in remarks.values()))
+    return Couplings(kinds, tuple(followers), constants, broken)
 
 
 def make_ready(motion: ET.Element, couplings: Couplings) -> bool:
@@ -157,7 +157,7 @@ def coupled(model: pin.Model, couplings: Couplings) -> tuple[pin.Model, list[str
             model = pin.transformJointIntoMimic(
                 model, model.getJointId(driver), model.getJointId(name), multiplier, offset
             )
-            ends = sorted((end - offset) / multiplier for end in ranges[name])
+            ends = [(end - offset) / multiplier for end in ranges[name]][:: 1 if multiplier > 0 else -1]
             narrow = max(low, ends[0]), min(high, ends[1])
             if narrow[1] - narrow[0] > NO_ROOM:
                 low, high = narrow

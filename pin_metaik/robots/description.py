@@ -102,10 +102,14 @@ class Description:
         _refuse_xacro(tree, self.what)
         return tree
 
-    def followers(self) -> list[str]:
-        """Names of the joints of a URDF that move and carry a mimic tag."""
-        tree = self.tree()
-        return [j.get("name", "") for j in tree.iterfind("joint[mimic]") if j.get("type") != "fixed"]
+    def free_mimics(self) -> tuple[str, ...]:
+        """Joints that move and carry a mimic tag which the model does not hold: all, or those that mean nothing."""
+        if self.is_mjcf:
+            return ()
+        motion, _ = motion_of(self.tree(), self.what)
+        if self.mimic:
+            return tuple(read_couplings(motion, self.what).broken)
+        return tuple(j.get("name", "") for j in motion.iterfind("joint[mimic]") if j.get("type") != "fixed")
 
     def _root(self) -> tuple[pin.JointModel, ...]:
         return () if self.base == "fixed" else (ROOTS[self.base](),)
@@ -117,14 +121,15 @@ class Description:
         renamed = make_ready(motion, couplings)
         with caught_prints() as prints:
             try:
-                free = pin.buildModelFromXML(ET.tostring(motion, encoding="unicode"), *self._root())
+                model = pin.buildModelFromXML(ET.tostring(motion, encoding="unicode"), *self._root())
             except (ValueError, RuntimeError) as error:
                 raise InvalidModel(f"{self.what} is not a valid URDF: {prints() or explain(error)}") from None
             printed = list(filter(None, [prints()]))
         if renamed:
-            with_own_names(free)
-        model, contradictions = coupled(free, couplings)
-        remarks = [*misspelt(tree), *mended, *printed, *plausible.numbers(tree), *couplings.remarks, *contradictions]
+            with_own_names(model)
+        model, contradictions = coupled(model, couplings)
+        free = [f"{wrong}: it is free" for wrong in couplings.broken.values()]
+        remarks = [*misspelt(tree), *mended, *printed, *plausible.numbers(tree), *free, *contradictions]
         return model, remarks
 
     def _urdf_geometry(self, model: pin.Model, shapes: Shapes) -> pin.GeometryModel:

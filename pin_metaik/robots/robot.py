@@ -79,10 +79,7 @@ class Robot:
     @property
     def free_mimics(self) -> tuple[str, ...]:
         """Joints that should follow another one by the URDF, but are free in the model."""
-        if self.description.is_mjcf:
-            return ()
-        held = {self.model.names[i] for i in self.model.mimicking_joints}
-        return tuple(name for name in self.description.followers() if name in self.model.names and name not in held)
+        return self.description.free_mimics()
 
     def _geometry(self, shapes: Shapes) -> pin.GeometryModel:
         geometry, remarks = self.description.geometry(self.model, shapes)

@@ -178,8 +178,8 @@ def test_the_same_gripper_gives_the_same_answer_whatever_its_followers_name():
 
 MEANINGLESS = {
     "a leader that does not exist": (
-        robot(joint("left_q1", "base", "a"), joint("left_q2", "a", "b", mimic='joint="q1"')),
-        r"'left_q2' mimics 'q1', which does not exist \(did you mean 'left_q1'\?\): it is free",
+        robot(joint("left_q1", "base", "a"), joint("left_q2", "a", "b", mimic='joint="ft_q1"')),
+        r"'left_q2' mimics 'ft_q1', which does not exist \(did you mean 'left_q1'\?\): it is free",
     ),
     "no leader": (
         robot(joint("a", "base", "a"), joint("b", "a", "b", mimic='multiplier="2"')),
