@@ -29,7 +29,8 @@ _NEVER = re.compile(
     r"visual|kinect|realsense|acceler|fixture|toolbox)|\b(index|middle|ring|pinky|little|pads?|cam|lens|prop|rotor|imu|"
     r"gyro|led|sc|com|cover|cable|screw|infra\d*|depth|color|rgb|mic|gps)\b"
 )
-_GRIPS = re.compile(r"\b(finger|thumb|knuckle|jaw|claw)|\b(gripper|grip)\b")
+_FINGERS = re.compile(r"\b(finger|thumb|knuckle|jaw|claw)")
+_GRIPS = re.compile(r"\b(gripper|grip)\b")
 _TURNS_A_WRIST = re.compile(r"\b(roll|pitch|yaw|rotat|rot|wrist)")
 
 
@@ -86,7 +87,8 @@ def _is_gripped(model: pin.Model, joint: int) -> bool:
     for mimicking, mimicked in zip(model.mimicking_joints, model.mimicked_joints, strict=True):
         if mimicked == joint and model.parents[mimicking] == model.parents[mimicked]:
             return True
-    return any(
-        _GRIPS.search(words) and not _TURNS_A_WRIST.search(words)
-        for words in (_words(model.names[j]) for j in list(model.supports[joint])[1:])
+    return any(_FINGERS.search(_words(model.names[j])) for j in list(model.supports[joint])[1:]) or (
+        bool(_GRIPS.search(_words(model.names[joint])))
+        and not _TURNS_A_WRIST.search(_words(model.names[joint]))
+        and joint not in set(model.parents)  # else it carries the gripper
     )
