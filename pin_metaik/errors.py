@@ -11,6 +11,12 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 LISTED, NEAR = 100, 8  # longer lists than this are cut to the nearest names
+LONGEST = 80  # characters of a name in a message
+
+
+def shortened(text: str) -> str:
+    """The beginning of a text that is too long for a message, e.g. a whole file given as a name."""
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]}..."
 
 
 class MetaIKError(ValueError):
@@ -32,12 +38,13 @@ class UnknownName(MetaIKError):
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
         self.kind, self.name, self.known = kind, name, sorted(known)
-        near = get_close_matches(name, self.known, n=NEAR, cutoff=0.5)
+        small = {known.lower(): known for known in self.known}  # UR5 is meant for ur5
+        near = [small[match] for match in get_close_matches(name.lower(), small, n=NEAR, cutoff=0.5)]
         hint = f"; did you mean {near[0]!r}?" if near else ";"
         shown = ", ".join(self.known)
         if len(self.known) > LISTED:
             shown = f"{', '.join(near or self.known[:NEAR])} ... ({len(self.known)} in all)"
-        super().__init__(f"no {kind} named {name!r}{hint} known: {shown}")
+        super().__init__(f"no {kind} named {shortened(name)!r}{hint} known: {shown}")
 
 
 class InvalidBounds(MetaIKError):

@@ -23,8 +23,8 @@ from pin_metaik.collision.shapes import Shape
 from pin_metaik.collision.simplify import Simplify, solid_of
 from pin_metaik.collision.solids import Solids
 from pin_metaik.collision.srdf import Pair, pair_of, write_srdf
-from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidGeometry, InvalidSetting, UnknownName
-from pin_metaik.kinematics.model import as_configuration
+from pin_metaik.errors import InvalidConfiguration, InvalidGeometry, InvalidSetting, UnknownName
+from pin_metaik.kinematics.model import as_configuration, frame_id
 from pin_metaik.output import writable
 
 
@@ -186,9 +186,7 @@ class CollisionWorld:
             InvalidGeometry: If the name is taken, the shape is none or the pose is not finite and orthonormal.
             UnknownName: If it may touch something that does not exist.
         """
-        if not self.model.existFrame(frame):
-            raise FrameNotFound(frame, {f.name for f in self.model.frames} - {"universe"})
-        holder = self.model.frames[self.model.getFrameId(frame)]
+        holder = self.model.frames[frame_id(self.model, frame)]
         fingers = [b.link for b in self._links if b.joint and self.model.parents[b.joint] == holder.parentJoint]
         held = Obstacle(name, shape, pose, tuple(fingers if touching is None else touching))
         self._enter(held, int(holder.parentJoint), holder.placement * held.pose)

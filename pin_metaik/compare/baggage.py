@@ -35,10 +35,10 @@ def pack(folder: Path, suite: Suite) -> dict[str, str]:
         if spec in catalogue() or spec in example_robots():
             continue
         robot = load_robot(spec)
-        table = robot.source.suffix.lower() == ".toml"
-        content = robot.source.read_bytes() if table else robot.urdf.encode()
+        source = robot.source if robot.source is not None and robot.source.suffix.lower() == ".toml" else None
+        content = robot.urdf.encode() if source is None else source.read_bytes()
         stem = re.sub(r"[^\w.-]", "_", name) or f"robot_{number}"
-        path = folder / ROBOTS / f"{stem}{'.toml' if table else '.urdf'}"
+        path = folder / ROBOTS / f"{stem}{'.urdf' if source is None else '.toml'}"
         if path.exists() and path.read_bytes() != content:
             raise InvalidSetting(f"{folder} has rows of another {name!r}, kept in {path}: choose another folder")
         path.parent.mkdir(parents=True, exist_ok=True)

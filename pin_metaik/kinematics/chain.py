@@ -29,6 +29,7 @@ from pin_metaik.kinematics.model import (
     model_of,
     neutral_inside,
 )
+from pin_metaik.kinematics.own_limits import with_own
 from pin_metaik.kinematics.paths import Motion, base_moves, lay_paths, leader_of, motion_of
 from pin_metaik.kinematics.placing import Placing, Scratch
 from pin_metaik.kinematics.reach import Reach, reach_of
@@ -157,7 +158,7 @@ class Chain:
         alike = {j for j in followers if j in motions and motions[j].rotates and motions[j].scale == 1.0}
         mimicked = {leader_of(model, j) for j in followers - alike}
         own = {name: span for name, span in given.items() if name not in {model.names[j] for j in followers}}
-        limits = limits_of(model, drivers, self.names, mimicked).replace(own)
+        limits = with_own(limits_of(model, drivers, self.names, mimicked), own)
         for j in followers:
             if model.names[j] in given:
                 mimic = model.joints[j].extract()

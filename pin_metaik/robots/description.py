@@ -1,29 +1,36 @@
-"""URDF text to Pinocchio's models: what can go wrong in reading is told by our errors, not by the parsers' prints."""
+"""What a model is made from, and Pinocchio's models of it: what goes wrong in reading is told by our errors."""
 
 from __future__ import annotations
 
-import os
-import sys
 import tempfile
-import threading
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 from weakref import WeakKeyDictionary
 
-import numpy as np
 import pinocchio as pin
 
 from pin_metaik.arguments import checked, checked_as
-from pin_metaik.errors import InvalidBounds, InvalidModel
+from pin_metaik.errors import InvalidModel
+from pin_metaik.robots import plausible
+from pin_metaik.robots.couplings import NO_COUPLINGS, coupled, make_ready, read_couplings, with_own_names
+from pin_metaik.robots.prints import caught_prints, explain
+from pin_metaik.robots.spelling import misspelt
+from pin_metaik.robots.text import outermost, parsed
+from pin_metaik.robots.wording import Shapes, motion_of, negative_sizes, shapes_of
 
 Base = Literal["fixed", "free flyer", "planar"]
 ROOTS = {"free flyer": pin.JointModelFreeFlyer, "planar": pin.JointModelPlanar}
-
-_STDERR = threading.Lock()
+KINDS: dict[Shapes, pin.GeometryType] = {
+    "collision": pin.GeometryType.COLLISION,
+    "visual": pin.GeometryType.VISUAL,
+}
+_CARRY_NUMBERS = ("link", "joint", "origin", "axis", "limit", "parent", "child", "mimic")
+_NOT_READ = ("equality", "include")  # of MJCF
 
 
 @checked_as(InvalidModel)
@@ -32,27 +39,150 @@ class Description:
     """What a model is made from: plain values, so that a process that gets them makes the same model again.
 
     Attributes:
-        urdf: URDF text.
-        source: The file it comes from; meshes are looked for from there.
+        text: The URDF, or the MJCF.
+        source: The file it comes from, from which meshes are looked for; None for text that comes from no file.
         base: What joins the base to the world.
         mimic: Couple joints with a mimic tag to the joint they follow.
     """
 
-    urdf: str = field(repr=False)
-    source: Path
+    text: str = field(repr=False)
+    source: Path | None
     base: Base = "fixed"
     mimic: bool = True
+
+    @property
+    def what(self) -> str:
+        """The file, as messages call it."""
+        return "the URDF text" if self.source is None else str(self.source)
+
+    @property
+    def is_mjcf(self) -> bool:
+        """Whether it is in MuJoCo's language."""
+        return outermost(self.text) == "mujoco"
 
     def model(self) -> pin.Model:
         """The model, built anew, and remembered with what it was made from (``description_of``).
 
         Raises:
-            InvalidModel: If the text is not a URDF; the message has the parser's own reason.
-            InvalidBounds: If a joint's lower limit is above its upper one.
+            InvalidModel: If the text is not a robot; the message has the parser's own reason.
         """
-        model = build_model(self.urdf, self.source, base=self.base, mimic=self.mimic)
+        return self.read()[0]
+
+    def read(self) -> tuple[pin.Model, list[str]]:
+        """The model, and what has to be said of it: what was guessed, mended, or could not be held.
+
+        Raises:
+            InvalidModel: If the text is not a robot; the message has the parser's own reason.
+        """
+        model, remarks = self._read_mjcf() if self.is_mjcf else self._read_urdf()
         _MADE_FROM[model] = self
-        return model
+        return model, remarks
+
+    def geometry(self, model: pin.Model, shapes: Shapes) -> tuple[pin.GeometryModel, list[str]]:
+        """Geometry of the model, meshes included, and what has to be said of it.
+
+        ``package://`` and relative paths are looked up in the folders above ``source``, the nearest first, then in
+        ROS_PACKAGE_PATH.
+
+        Raises:
+            InvalidModel: If a mesh is missing or unreadable, or a shape cannot be read; the message names it.
+        """
+        geometry = self._mjcf_geometry(model, shapes) if self.is_mjcf else self._urdf_geometry(model, shapes)
+        return geometry, plausible.meshes(geometry)
+
+    def tree(self) -> ET.Element:
+        """The elements of a URDF.
+
+        Raises:
+            InvalidModel: If it is not a URDF: other XML, not well-formed, or xacro that was not expanded.
+        """
+        if outermost(self.text) == "sdf":
+            raise InvalidModel(f"{self.what} is SDF, which Pinocchio's wheels cannot read: convert it to URDF")
+        tree = parsed(self.text, self.what)
+        _refuse_xacro(tree, self.what)
+        return tree
+
+    def free_mimics(self) -> tuple[str, ...]:
+        """Joints that move and carry a mimic tag which the model does not hold: all, or those that mean nothing."""
+        if self.is_mjcf:
+            return ()
+        motion, _ = motion_of(self.tree(), self.what)
+        if self.mimic:
+            return tuple(read_couplings(motion, self.what).broken)
+        return tuple(j.get("name", "") for j in motion.iterfind("joint[mimic]") if j.get("type") != "fixed")
+
+    def _root(self) -> tuple[pin.JointModel, ...]:
+        return () if self.base == "fixed" else (ROOTS[self.base](),)
+
+    def _read_urdf(self) -> tuple[pin.Model, list[str]]:
+        tree = self.tree()
+        motion, mended = motion_of(tree, self.what)
+        couplings = read_couplings(motion, self.what) if self.mimic else NO_COUPLINGS
+        renamed = make_ready(motion, couplings)
+        with caught_prints() as prints:
+            try:
+                model = pin.buildModelFromXML(ET.tostring(motion, encoding="unicode"), *self._root())
+            except (ValueError, RuntimeError) as error:
+                raise InvalidModel(f"{self.what} is not a valid URDF: {prints() or explain(error)}") from None
+            printed = list(filter(None, [prints()]))
+        if renamed:
+            with_own_names(model)
+        model, contradictions = coupled(model, couplings)
+        free = [f"{wrong}: it is free" for wrong in couplings.broken.values()]
+        remarks = [*misspelt(tree), *mended, *printed, *plausible.numbers(tree), *free, *contradictions]
+        return model, remarks
+
+    def _urdf_geometry(self, model: pin.Model, shapes: Shapes) -> pin.GeometryModel:
+        tree = self.tree()
+        if wrong := negative_sizes(tree, shapes):
+            raise InvalidModel(f"the {shapes} geometry of {self.what} has a size below zero: {'; '.join(wrong)}")
+        shaped, counts = shapes_of(tree, shapes)
+        text = ET.tostring(shaped, encoding="unicode")
+        folders = [str(folder) for folder in (self.source or Path("here")).absolute().parents]
+        with caught_prints() as prints:
+            try:
+                geometry = pin.buildGeomFromUrdfString(model, text, KINDS[shapes], package_dirs=folders)
+            except (ValueError, RuntimeError) as error:
+                looked = "meshes are looked for in the folders above the file, then in ROS_PACKAGE_PATH"
+                why = "; ".join(filter(None, (prints(), explain(error))))
+                raise InvalidModel(f"the geometry of {self.what} cannot be loaded: {why} ({looked})") from None
+            why = prints()
+        read = Counter(model.frames[shape.parentFrame].name for shape in geometry.geometryObjects)
+        lost = [link for link, count in counts.items() if read[link] != count]
+        if lost:
+            named = ", ".join(map(repr, lost))
+            raise InvalidModel(f"the {shapes} geometry of {self.what} cannot be read, of link {named}: {why}")
+        return geometry
+
+    def _read_mjcf(self) -> tuple[pin.Model, list[str]]:
+        if self.base != "fixed":
+            raise InvalidModel(f"{self.what} is MJCF: what joins its base to the world is said there, by <freejoint/>")
+        with self._file() as path, caught_prints() as prints:
+            try:
+                model = pin.buildModelFromMJCF(path)
+            except (ValueError, RuntimeError) as error:
+                raise InvalidModel(f"{self.what} is not MJCF that can be read: {prints() or explain(error)}") from None
+            printed = list(filter(None, [prints()]))
+        left = [f"{self.what} has <{name}>, which is not read" for name in _NOT_READ if f"<{name}" in self.text]
+        return model, [*left, *printed]
+
+    def _mjcf_geometry(self, model: pin.Model, shapes: Shapes) -> pin.GeometryModel:
+        with self._file() as path, caught_prints():
+            try:
+                return pin.buildGeomFromMJCF(model, path, KINDS[shapes])
+            except (ValueError, RuntimeError) as error:
+                raise InvalidModel(f"the geometry of {self.what} cannot be loaded: {explain(error)}") from None
+
+    @contextmanager
+    def _file(self) -> Iterator[str]:
+        """A file with the text, for the parser that takes nothing else."""
+        if self.source is not None:
+            yield str(self.source)
+            return
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "robot.xml")
+            path.write_text(self.text, encoding="utf-8")
+            yield str(path)
 
 
 _MADE_FROM: WeakKeyDictionary[pin.Model, Description] = WeakKeyDictionary()
@@ -64,99 +194,11 @@ def description_of(model: pin.Model) -> Description | None:
     return _MADE_FROM.get(model)
 
 
-def read_urdf(path: Path) -> str:
-    """Text of a URDF file.
-
-    Raises:
-        InvalidModel: If there is no such file, or it is not text.
-    """
-    try:
-        return path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise InvalidModel(f"cannot read {path}: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise InvalidModel(f"{path} is not a URDF: it is not UTF-8 text") from None
-
-
-def build_model(urdf: str, source: Path, *, base: Base = "fixed", mimic: bool = True) -> pin.Model:
-    """Model of a URDF text that comes from the file ``source``.
-
-    Joints with a mimic tag become ``JointModelMimic``, scaled copies of the joint they follow, if Pinocchio can hold
-    them all: the followed joint must come earlier in its tree, and be continuous if, and only if, the follower is.
-    Otherwise all joints are free.
-
-    Raises:
-        InvalidModel: If the text is not a URDF; the message has the parser's own reason.
-        InvalidBounds: If a joint's lower limit is above its upper one.
-    """
-    try:
-        if ET.fromstring(urdf).tag != "robot":
-            raise InvalidModel(f"{source} is not a URDF: its outermost element is not <robot>")
-    except ET.ParseError as error:
-        raise InvalidModel(f"{source} is not well-formed XML: {error}") from None
-    root = () if base == "fixed" else (ROOTS[base](),)
-    with _parser_prints() as prints:
-        try:
-            model = pin.buildModelFromXML(urdf, *root, mimic=False)  # also says what is wrong if something is
-        except (ValueError, RuntimeError) as error:
-            raise InvalidModel(f"{source} is not a valid URDF: {prints() or explain(error)}") from None
-        if mimic and "<mimic" in urdf:
-            with suppress(ValueError, RuntimeError):
-                model = pin.buildModelFromXML(urdf, *root, mimic=True)
-    _check_limits(model, source)
-    return model
-
-
-def build_geometry(model: pin.Model, urdf: str, source: Path, kind: pin.GeometryType) -> pin.GeometryModel:
-    """Geometry of a URDF text, meshes included.
-
-    ``package://`` and relative paths are looked up in the folders above ``source``, the nearest first, then in
-    ROS_PACKAGE_PATH.
-
-    Raises:
-        InvalidModel: If a mesh is missing or unreadable; the message names it.
-    """
-    folders = [str(folder) for folder in source.absolute().parents]
-    try:
-        return pin.buildGeomFromUrdfString(model, urdf, kind, package_dirs=folders)
-    except (ValueError, RuntimeError) as error:
-        looked = "meshes are looked for in the folders above the file, then in ROS_PACKAGE_PATH"
-        raise InvalidModel(f"the geometry of {source} cannot be loaded: {explain(error)} ({looked})") from None
-
-
-def mimic_joints(urdf: str) -> list[str]:
-    """Names of the moving joints that carry a mimic tag, in the order of the text."""
-    joints = ET.fromstring(urdf).findall("joint")
-    return [j.get("name", "") for j in joints if j.find("mimic") is not None and j.get("type") != "fixed"]
-
-
-def explain(error: Exception) -> str:
-    """The sentence in an exception of Pinocchio or coal, without the C++ file and function it comes from."""
-    return " ".join(str(error).rpartition("message: ")[2].split())
-
-
-def _check_limits(model: pin.Model, source: Path) -> None:
-    for k in np.flatnonzero(model.lowerPositionLimit > model.upperPositionLimit):
-        name = next(n for n, j in zip(model.names, model.joints, strict=True) if 0 <= k - j.idx_q < j.nq and j.id > 0)
-        lower, upper = model.lowerPositionLimit[k], model.upperPositionLimit[k]
-        raise InvalidBounds(f"{source}: joint {name!r} has its lower limit {lower:g} above its upper {upper:g}")
-
-
-@contextmanager
-def _parser_prints() -> Iterator[Callable[[], str]]:
-    """urdfdom explains itself on file descriptor 2 only: keep that from the terminal, and give it as one line."""
-
-    def text() -> str:
-        caught.seek(0)
-        lines = (line.strip() for line in caught.read().decode(errors="replace").splitlines())
-        return "; ".join(line.removeprefix("Error:").strip() for line in lines if not line.startswith("at line"))
-
-    with _STDERR, tempfile.TemporaryFile() as caught:
-        sys.stderr.flush()
-        saved = os.dup(2)
-        os.dup2(caught.fileno(), 2)
-        try:
-            yield text
-        finally:
-            os.dup2(saved, 2)
-            os.close(saved)
+def _refuse_xacro(tree: ET.Element, what: str) -> None:
+    """Xacro is a language of macros: what it stands for is in no element that a URDF parser reads."""
+    for element in tree.iter():
+        signs = [f"<{element.tag}>"] if element.tag.startswith("xacro:") else []
+        if not signs and element.tag in _CARRY_NUMBERS:
+            signs = [f'{key}="{value}"' for key, value in element.attrib.items() if "${" in value or "$(" in value]
+        if signs:
+            raise InvalidModel(f"{what} is xacro that was not expanded: it has {signs[0]}; run xacro on it first")

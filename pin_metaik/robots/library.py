@@ -15,34 +15,16 @@ LEFT_OUT = {
     "talos_legs": "it is the URDF of talos; load that, with left_sole_link or right_sole_link for its legs",
 }
 
-# The frame one means when none is named. Others get tool0, or else the leaf with the most joints on its path.
+# The frame one means when none is named, where the names of links do not say it (see ``tips``).
 TIPS = {
-    "alex_nub_hands": "LeftGripperYawLink",
-    "alex_psyonic_hands": "LeftGripperYawLink",
     "alex_sake_hands": "LeftGripperYawLink",
-    "anymal_kinova": "j2s6s200_end_effector",
     "b1_z1": "link06",
-    "baxter": "left_gripper",
-    "bluevolta_bravo7_gripper": "grasping_poing",
-    "bravo7_gripper": "grasping_poing",
-    "falcon_bravo7_gripper": "grasping_poing",
-    "g1_with_hands": "left_hand_palm_link",
-    "kinova": "j2s6s200_end_effector",
-    "panda": "panda_hand_tcp",
-    "panda_collision": "panda_hand_tcp",
     "pr2": "r_gripper_tool_frame",
-    "romeo": "l_gripper",
-    "so101": "gripper_frame_link",
     "talos": "gripper_left_base_link",
     "talos_arm": "gripper_left_base_link",
     "talos_box": "gripper_left_base_link",
     "talos_full": "gripper_left_base_link",
     "talos_full_box": "gripper_left_base_link",
-    "tiago": "hand_tool_link",
-    "tiago_dual": "hand_left_tool_link",
-    "tiago_no_hand": "wrist_ft_tool_link",
-    "tiago_pro": "arm_left_tool_link",
-    "xarm7": "link_eef",
     "z1": "link06",
 }
 

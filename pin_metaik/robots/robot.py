@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Mapping
+import warnings
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
 
 import pinocchio as pin
 
 from pin_metaik.arguments import checked_as
 from pin_metaik.errors import InvalidModel, InvalidTable, UnknownName
-from pin_metaik.robots.description import Description, build_geometry, mimic_joints, read_urdf
+from pin_metaik.robots.description import Base, Description
 from pin_metaik.robots.library import LEFT_OUT, TIPS, catalogue, example_robots
+from pin_metaik.robots.plausible import angles_in_radians
 from pin_metaik.robots.table import read_table
+from pin_metaik.robots.text import read_text
+from pin_metaik.robots.tips import default_tip
 from pin_metaik.robots.urdf import to_urdf
+from pin_metaik.robots.wording import Shapes
+
+SUFFIXES = (".urdf", ".xml", ".mjcf", ".xacro", ".sdf", ".toml")
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,9 +31,10 @@ class Robot:
     Attributes:
         name: Name it was asked for by, or the one its file gives.
         model: Its ``pin.Model``.
-        frame: Default tip frame: one that at least one joint moves, under a name no other frame has.
+        frame: Default tip frame: one that at least one joint moves, under a name no other link has.
         description: What the model is made from: plain values that pickle, where a model with mimic joints does not.
         srdf: File with reference configurations and disabled collisions, or None.
+        remarks: What was guessed, mended or could not be held in reading it; ``load_robot`` warns of each.
     """
 
     name: str
@@ -36,15 +42,16 @@ class Robot:
     frame: str
     description: Description = field(repr=False)
     srdf: Path | None = None
+    remarks: tuple[str, ...] = field(default=(), repr=False)
 
     @property
     def urdf(self) -> str:
-        """Its URDF text; that of a DH table is written from it."""
-        return self.description.urdf
+        """Its URDF text, or MJCF if it comes as that; that of a DH table is written from it."""
+        return self.description.text
 
     @property
-    def source(self) -> Path:
-        """The file it comes from."""
+    def source(self) -> Path | None:
+        """The file it comes from; None, if it was given as text."""
         return self.description.source
 
     @cached_property
@@ -52,18 +59,18 @@ class Robot:
         """Collision geometry, read on first use; it comes without collision pairs.
 
         Raises:
-            InvalidModel: If a mesh is missing or unreadable; the message names it.
+            InvalidModel: If a mesh or a shape is missing or unreadable; the message names it.
         """
-        return self._geometry(pin.GeometryType.COLLISION)
+        return self._geometry("collision")
 
     @cached_property
     def visual_model(self) -> pin.GeometryModel:
         """Visual geometry, read on first use.
 
         Raises:
-            InvalidModel: If a mesh is missing or unreadable; the message names it.
+            InvalidModel: If a mesh or a shape is missing or unreadable; the message names it.
         """
-        return self._geometry(pin.GeometryType.VISUAL)
+        return self._geometry("visual")
 
     def __getstate__(self) -> dict[str, object]:
         """Pickle without the geometry: megabytes, read again on first use."""
@@ -72,33 +79,47 @@ class Robot:
     @property
     def free_mimics(self) -> tuple[str, ...]:
         """Joints that should follow another one by the URDF, but are free in the model."""
-        held = {self.model.names[i] for i in self.model.mimicking_joints}
-        return tuple(name for name in mimic_joints(self.urdf) if name not in held)
+        return self.description.free_mimics()
 
-    def _geometry(self, kind: pin.GeometryType) -> pin.GeometryModel:
-        return build_geometry(self.model, self.urdf, self.source, kind)
+    def _geometry(self, shapes: Shapes) -> pin.GeometryModel:
+        geometry, remarks = self.description.geometry(self.model, shapes)
+        _say(self.name, remarks)
+        return geometry
 
 
-class RobotName(NamedTuple):
-    """A robot that can be loaded by name.
+class RobotName(str):
+    """The name of a robot that can be loaded: a string, with what one wants to know of the robot.
 
     Attributes:
-        name: What ``load_robot`` takes.
+        name: The string itself.
         source: "catalogue" or "example-robot-data".
         dof: Degrees of freedom, fingers and all (``model.nv``).
         frame: Default tip frame.
     """
 
-    name: str
     source: str
     dof: int
     frame: str
+
+    def __new__(cls, name: str, source: str, dof: int, frame: str) -> RobotName:
+        """The string ``name`` with its attributes."""
+        self = super().__new__(cls, name)
+        self.source, self.dof, self.frame = source, dof, frame
+        return self
+
+    def __reduce__(self) -> tuple[type[RobotName], tuple[str, str, int, str]]:
+        return RobotName, (self.name, self.source, self.dof, self.frame)
+
+    @property
+    def name(self) -> str:
+        """The name as a plain string."""
+        return str.__str__(self)
 
 
 def robot_names() -> list[RobotName]:
     """Every robot that ``load_robot`` knows by name, the catalogue first; builds all models, in half a second."""
     sources = {"catalogue": list(catalogue()), "example-robot-data": list(example_robots())}
-    loaded = ((load_robot(name), source) for source, names in sources.items() for name in names)
+    loaded = ((_loaded(name, None, "fixed", True), source) for source, names in sources.items() for name in names)
     return [RobotName(robot.name, source, robot.model.nv, robot.frame) for robot, source in loaded]
 
 
@@ -112,63 +133,76 @@ def load_robot(
 ) -> Robot:
     """Load a robot.
 
+    What was guessed or mended in reading it, and what could not be held, is a ``UserWarning`` of one line each, which
+    names the joint or link; they are also in ``robot.remarks``.
+
     Args:
-        name: Name in the catalogue or in example-robot-data (also as ``robot_names`` gives it), or path of a ``.urdf``
-            or of a DH table's ``.toml``.
+        name: Name in the catalogue or in example-robot-data (also as ``robot_names`` gives it), path of a URDF, of an
+            MJCF or of a DH table's ``.toml``, or the text of a URDF or an MJCF.
         parameters: Values that replace those of a DH table's ``[parameters]``, in the table's units.
         free_flyer: Put the base on a free-flyer (six more coordinates); otherwise it is fixed.
         mimic: Make joints with a mimic tag scaled copies of the joint they follow instead of coordinates of their own
-            (Pinocchio's ``aba`` refuses such models). Where Pinocchio cannot hold the tags, all joints are free and
-            ``robot.free_mimics`` names them.
+            (Pinocchio's ``aba`` refuses such models); their limits bind the joint they follow. Joints whose tag means
+            nothing stay free; ``robot.free_mimics`` names them.
 
     Raises:
         UnknownName: If nothing is so named, or the table has no such parameter.
         InvalidTable: If the DH table makes no sense.
-        InvalidModel: If the file is missing, is not a URDF, or no joint of it moves anything.
-        InvalidBounds: If a joint's lower limit is above its upper one.
+        InvalidModel: If the file is missing, is not a robot, or no joint of it moves anything.
     """
-    label, path, srdf = _locate(name.name if isinstance(name, RobotName) else name)
-    if path.suffix.lower() == ".toml":
-        table = read_table(path, parameters)
-        label, urdf = label or table.name, to_urdf(table)
+    robot = _loaded(name, parameters, "free flyer" if free_flyer else "fixed", mimic)
+    _say(robot.name, robot.remarks)
+    return robot
+
+
+def _loaded(name: str | Path, parameters: Mapping[str, float] | None, base: Base, mimic: bool) -> Robot:
+    label, content, srdf = _located(name)
+    source, remarks = content if isinstance(content, Path) else None, list[str]()
+    if source is not None and source.suffix.lower() == ".toml":
+        table = read_table(source, parameters)
+        label, text, remarks = label or table.name, to_urdf(table), angles_in_radians(table)
     elif parameters:
-        raise InvalidTable(f"{name} has no parameters: only DH tables have")
+        raise InvalidTable(f"{label or source or 'the text'} has no parameters: only DH tables have")
     else:
-        urdf = read_urdf(path)
-    description = Description(urdf, path, "free flyer" if free_flyer else "fixed", mimic)
-    model = description.model()
+        text = str(content) if source is None else read_text(source)
+    description = Description(text, source, base, mimic)
+    model, said = description.read()
     label = label or model.name
-    return Robot(label, model, _tip(model, TIPS.get(label, "tool0"), path), description, srdf)
+    frame = TIPS.get(label, "")
+    frame = frame if model.existFrame(frame) else default_tip(model)
+    if not frame:
+        raise InvalidModel(f"{description.what} has no frame that a joint moves")
+    return Robot(label, model, frame, description, srdf, (*remarks, *said))
 
 
-def _locate(name: str | Path) -> tuple[str, Path, Path | None]:
-    """Label (empty for a path), file and SRDF of a robot."""
+def _located(name: str | Path) -> tuple[str, str | Path, Path | None]:
+    """Label (empty if the content has it), file or text, and SRDF of a robot."""
     if not isinstance(name, (str, Path)):
         raise InvalidModel(f"a robot is a name or a path, got {name!r}")
-    path = Path(name).expanduser()
-    if isinstance(name, Path) or len(path.parts) > 1 or path.suffix.lower() in (".urdf", ".toml"):
-        if path.suffix.lower() not in (".urdf", ".toml"):
-            raise InvalidModel(f"cannot load {path}: a robot is a .urdf file, a DH table (.toml) or a name")
+    if isinstance(name, str):
+        name = str.__str__(name)
+        if name in catalogue():
+            return name, catalogue()[name], None
+        if name in example_robots():
+            return name, *example_robots()[name]
+        if name in LEFT_OUT:
+            raise InvalidModel(f"{name!r} of example-robot-data cannot be loaded: {LEFT_OUT[name]}")
+        if "<" in name:
+            return "", name, None
+        path = Path(name).expanduser()
+        if not (len(path.parts) > 1 or path.suffix.lower() in SUFFIXES or _is_file(path)):
+            raise UnknownName("robot", name, {*catalogue(), *example_robots()})
         return "", path, None
-    if name in catalogue():
-        return name, catalogue()[name], None
-    if name in LEFT_OUT:
-        raise InvalidModel(f"{name!r} of example-robot-data cannot be loaded: {LEFT_OUT[name]}")
-    if name not in example_robots():
-        raise UnknownName("robot", name, {*catalogue(), *example_robots()})
-    return name, *example_robots()[name]
+    return "", name.expanduser(), None
 
 
-def _tip(model: pin.Model, usual: str, path: Path) -> str:
-    """The usual tip if the model has it, else the leaf that most joints move (of equals, the first by name)."""
-    frames = list(model.frames)
-    count = Counter(f.name for f in frames)
-    inner = {f.parentFrame for f in frames}
-    depth = {
-        f.name: (i not in inner, len(model.supports[f.parentJoint]))
-        for i, f in enumerate(frames)
-        if f.parentJoint > 0 and count[f.name] == 1
-    }
-    if not depth:
-        raise InvalidModel(f"{path} has no frame that a joint moves")
-    return usual if usual in depth else min(depth, key=lambda name: (*(-d for d in depth[name]), name))
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # longer than a file's name can be
+        return False
+
+
+def _say(name: str, remarks: Iterable[str]) -> None:
+    for remark in remarks:
+        warnings.warn(f"{name}: {remark}", UserWarning, stacklevel=3)

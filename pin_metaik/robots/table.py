@@ -29,6 +29,7 @@
 from __future__ import annotations
 
 import tomllib
+import warnings
 from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from math import inf, isfinite, pi, radians
@@ -93,6 +94,7 @@ class _Reader:
             if name not in own:
                 raise UnknownName(f"parameter of {content['name']}", name, own)
         self.parameters: dict[str, float] = {}
+        self.used: set[str] = set()
         for name, value in {**own, **replaced}.items():
             self.parameters[name] = self.number(value, f"{path}: parameters: {name}")
 
@@ -103,6 +105,8 @@ class _Reader:
             raise InvalidTable(f"{self.path}: joint is not a list of tables: write [[joint]] above each row")
         rows = tuple(self.row(joint, number) for number, joint in enumerate(joints, start=1))
         base, tool = self.placement("base"), self.placement("tool")
+        if idle := self.parameters.keys() - self.used:
+            warnings.warn(f"{self.path}: no row uses the parameters {', '.join(sorted(idle))}", stacklevel=3)
         description, source = (self.content.get(key, "").strip() for key in ("description", "source"))
         try:
             return DHTable(self.content["name"], self.content["convention"], rows, base, tool, description, source)
@@ -185,6 +189,7 @@ class _Reader:
                 near = get_close_matches(name, self.parameters, n=1)
                 hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(self.parameters) or 'none'}"
                 raise InvalidTable(f"{place} = {value!r} is neither a number nor a parameter; {hint}")
+            self.used.add(name)
             return -self.parameters[name] if value.startswith("-") else self.parameters[name]
         if isinstance(value, bool) or not isinstance(value, Real):
             raise InvalidTable(f"{place} = {value!r} is not a number")

@@ -7,14 +7,17 @@ import pinocchio as pin
 import pytest
 
 from pin_metaik.errors import InvalidBounds, InvalidModel, InvalidTable, UnknownName
+from pin_metaik.kinematics import Chain
+from pin_metaik.kinematics.model import frame_id
 from pin_metaik.robots import load_robot, robot_names
 from pin_metaik.robots.description import description_of
 from pin_metaik.robots.library import LEFT_OUT, TIPS, catalogue, example_robots
 
 NAMES = [*catalogue(), *example_robots()]
 ARMS = ["baxter", "kinova", "panda", "pr2", "talos", "talos_arm", "tiago", "ur5", "ur10", "xarm7", "z1"]
-MIMICKING = ["baxter", "panda", "panda_collision", "pr2", "tiago_pro"]
-FREED = ["alex_psyonic_hands", "romeo", "talos_full", "talos_full_box"]
+MIMICKING = ["baxter", "panda", "panda_collision", "pr2", "romeo", "talos_full", "talos_full_box", "tiago_pro"]
+FREED = ["alex_psyonic_hands"]
+REMARKED = {"alex_psyonic_hands", "pr2"}
 
 JOINT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
 MESH = (
@@ -29,6 +32,12 @@ def urdf(limit: str = JOINT, geometry: str = "", kind: str = "revolute", more: s
       {more}</robot>"""
 
 
+MJCF = """<mujoco model="arm"><compiler angle="radian"/><worldbody>
+  <body name="a" pos="0 0 0.1"><joint name="j1" type="hinge" axis="0 0 1" range="-3 3"/>
+    <body name="b" pos="0 0 0.3"><joint name="j2" type="slide" axis="0 1 0" range="-2 2"/>
+      <geom type="box" size="0.1 0.1 0.1"/><site name="tip" pos="0 0 0.3"/></body></body></worldbody></mujoco>"""
+
+
 @pytest.fixture
 def write(tmp_path):
     def write(text: str, name: str = "arm.urdf") -> Path:
@@ -40,13 +49,14 @@ def write(tmp_path):
     return write
 
 
+@pytest.mark.filterwarnings("ignore:.*mimics|.*leave that no room")
 @pytest.mark.parametrize("name", NAMES)
 def test_every_listed_robot_loads_with_a_tip_that_its_joints_move(name, capfd):
     robot = load_robot(name)
     model, data = robot.model, robot.model.createData()
-    frame = model.getFrameId(robot.frame)
+    frame = frame_id(model, robot.frame)
     assert robot.name == name
-    assert frame < model.nframes
+    assert bool(robot.remarks) == (name in REMARKED)
     assert np.abs(pin.computeFrameJacobian(model, data, pin.neutral(model), frame)).max() > 0
     assert not {"collision_model", "visual_model"} & set(vars(robot))
     assert capfd.readouterr() == ("", "")
@@ -56,9 +66,14 @@ def test_the_list_has_every_robot_with_its_source_freedom_and_tip():
     listed = robot_names()
     assert [robot.name for robot in listed] == NAMES
     by_name = {robot.name: robot for robot in listed}
-    assert by_name["rv7fl"] == ("rv7fl", "catalogue", 6, "tool0")
-    assert by_name["panda"] == ("panda", "example-robot-data", 8, "panda_hand_tcp")
+    rv7fl, panda = by_name["rv7fl"], by_name["panda"]
+    assert (rv7fl.source, rv7fl.dof, rv7fl.frame) == ("catalogue", 6, "tool0")
+    assert (panda.source, panda.dof, panda.frame) == ("example-robot-data", 8, "panda_hand_tcp")
     assert set(ARMS) <= set(by_name)
+    assert "panda" in listed
+    assert panda == "panda" and hash(panda) == hash("panda") and f"{panda:>7}" == "  panda"
+    again = pickle.loads(pickle.dumps(panda))
+    assert (again, again.frame) == ("panda", "panda_hand_tcp")
 
 
 def test_every_robot_of_example_robot_data_is_listed_or_left_out_for_a_reason():
@@ -89,10 +104,12 @@ def test_bases_are_fixed_unless_asked_otherwise():
     assert load_robot("talos_arm").model.nv == 7
 
 
+@pytest.mark.filterwarnings("ignore:.*leave that no room")
 @pytest.mark.parametrize("name", MIMICKING)
 def test_a_mimic_joint_moves_as_its_urdf_says(name):
     held, free = load_robot(name), load_robot(name, mimic=False)
-    tags = {joint.get("name"): joint.find("mimic") for joint in ET.fromstring(held.urdf).findall("joint[mimic]")}
+    moving = [joint for joint in ET.fromstring(held.urdf).findall("joint[mimic]") if joint.get("type") != "fixed"]
+    tags = {joint.get("name"): joint.find("mimic") for joint in moving}
     assert held.free_mimics == ()
     assert set(free.free_mimics) == set(tags)
     assert free.model.nv - held.model.nv == len(tags)
@@ -115,9 +132,10 @@ def test_a_mimic_joint_moves_as_its_urdf_says(name):
 
 
 @pytest.mark.parametrize("name", FREED)
-def test_mimic_joints_that_pinocchio_cannot_hold_are_free_and_said_to_be(name):
-    robot = load_robot(name)
-    assert robot.free_mimics
+def test_mimic_joints_whose_leader_does_not_exist_are_free_and_said_to_be(name):
+    with pytest.warns(UserWarning, match=r"'Left_index_q2' mimics 'index_q1', which .*did you mean 'Left_index_q1'"):
+        robot = load_robot(name)
+    assert len(robot.free_mimics) == len(robot.remarks) == 8
     assert robot.model.nv == load_robot(name, mimic=False).model.nv
 
 
@@ -149,6 +167,17 @@ def test_a_robot_prints_in_one_line():
     assert len(repr(load_robot("panda")).splitlines()) == 1
 
 
+@pytest.mark.parametrize(("name", "meant"), [("UR5", "ur5"), ("Panda", "panda"), ("PUMA560", "puma560")])
+def test_capitals_do_not_hide_which_name_is_meant(name, meant):
+    with pytest.raises(UnknownName, match=f"no robot named '{name}'; did you mean '{meant}'"):
+        load_robot(name)
+
+
+def test_a_long_name_is_cut_in_the_message():
+    with pytest.raises(UnknownName, match=r"no robot named 'a{80}\.\.\.'; known"):
+        load_robot("a" * 5000)
+
+
 @pytest.mark.parametrize("name", ["pandda", "", "ur", "Panda"])
 def test_an_unknown_name_is_answered_with_the_names_there_are(name):
     with pytest.raises(UnknownName, match=r"known: .*panda.*rv7fl") as caught:
@@ -177,26 +206,15 @@ def test_a_urdf_may_begin_with_a_byte_order_mark_and_end_in_capitals(tmp_path):
     assert load_robot(path).name == "arm"
 
 
-def test_without_a_usual_tip_it_is_the_leaf_with_the_most_joints():
-    def link(name: str, parent: str, kind: str) -> str:
-        joint = f'<joint name="{name}_j" type="{kind}"><parent link="{parent}"/><child link="{name}"/>{JOINT}</joint>'
-        return f'<link name="{name}"/>{joint}'
-
-    from pin_metaik.robots.description import build_model
-    from pin_metaik.robots.robot import _tip
-
-    tree = [link("camera", "tip", "fixed"), link("b", "tip", "revolute"), link("a", "tip", "revolute")]
-    model = build_model(urdf(more="".join(tree)), Path("arm.urdf"))
-    assert _tip(model, "tool0", Path("arm.urdf")) == "a"
-    assert _tip(model, "camera", Path("arm.urdf")) == "camera"
-    assert _tip(model, "base", Path("arm.urdf")) == "a"
-
-
 UNREADABLE = {
-    "empty": ("", "not well-formed XML: no element found"),
+    "empty": ("", "it has no XML element <robot>"),
     "cut short": (urdf()[:-20], "not well-formed XML"),
-    "no XML": ("robot", "not well-formed XML: syntax error: line 1"),
-    "another language": ("<sdf/>", "outermost element is not <robot>"),
+    "no XML": ("robot", "it has no XML element <robot>"),
+    "another language": ("<scene/>", "outermost element is <scene>, not <robot>"),
+    "SDF": ("<sdf version='1.6'/>", "is SDF, which Pinocchio's wheels cannot read"),
+    "xacro": (urdf(more='<xacro:include filename="hand.xacro"/>'), "xacro that was not expanded: it has <xacro:incl"),
+    "a property of xacro": (urdf(JOINT.replace('"-1"', '"${-pi}"')), r'not expanded: it has lower="\$\{-pi\}"'),
+    "a version to come": (urdf().replace("<robot", "<robot version='2.0'"), "URDF of version '2.0': up to 1.2"),
     "no links": ('<robot name="a"/>', "No link elements found"),
     "two roots": (urdf(more='<link name="b2"/>'), r"Two root links found: \[b2\] and \[base\]"),
     "a revolute joint without limits": (
@@ -221,22 +239,61 @@ def test_a_urdf_that_cannot_be_read_is_told_by_one_error_and_nothing_printed(wha
     assert capfd.readouterr() == ("", "")
 
 
-def test_crossed_limits_are_refused_with_the_joints_name(write):
-    with pytest.raises(InvalidBounds, match="joint 'j' has its lower limit 1 above its upper -1"):
-        load_robot(write(urdf('<limit lower="1" upper="-1" effort="1" velocity="1"/>')))
+def test_crossed_limits_refuse_the_chain_that_the_joint_moves_and_not_the_robot(write):
+    crossed = (
+        '<joint name="k" type="revolute"><parent link="base"/><child link="b"/><limit lower="1" upper="-1"/></joint>'
+    )
+    robot = load_robot(write(urdf(more=f'<link name="b"/>{crossed}')))
+    assert Chain(robot.model, "tip").n == 1
+    with pytest.raises(InvalidBounds, match=r"joint .k. has its lower limit 1\.0 above its upper limit -1"):
+        Chain(robot.model, "b")
 
 
 def test_files_that_are_missing_or_of_another_kind_are_named(tmp_path, write):
-    with pytest.raises(InvalidModel, match=r"cannot read .*nowhere\.urdf: No such file"):
-        load_robot(tmp_path / "nowhere.urdf")
+    for name in ("nowhere.urdf", "arm.xml", "arm.urdf.xacro"):
+        with pytest.raises(InvalidModel, match=rf"cannot read .*{name}: No such file"):
+            load_robot(tmp_path / name)
+        with pytest.raises(InvalidModel, match=rf"cannot read {name}: No such file"):
+            load_robot(name)
     with pytest.raises(InvalidModel, match=r"cannot read .*folder\.urdf: Is a directory"):
         (tmp_path / "folder.urdf").mkdir()
         load_robot(tmp_path / "folder.urdf")
-    with pytest.raises(InvalidModel, match=r"arm\.xacro: a robot is a \.urdf file, a DH table \(\.toml\) or a name"):
-        load_robot(write(urdf(), "arm.xacro"))
-    with pytest.raises(InvalidModel, match="not UTF-8"):
-        (tmp_path / "latin.urdf").write_bytes(b"<robot name='\xff'/>")
-        load_robot(tmp_path / "latin.urdf")
+    with pytest.raises(InvalidModel, match=r"arm\.stl is not a URDF: it has no XML element <robot>"):
+        load_robot(write(MESH, "arm.stl"))
+
+
+@pytest.mark.parametrize("name", ["arm.urdf", "arm.xml", "arm.xacro", "arm.urdf.xacro", "arm.txt", "arm"])
+def test_a_files_content_decides_what_it_is_not_its_suffix(name, write, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert load_robot(write(urdf(), name)).frame == load_robot(name).frame == "tip"
+
+
+def test_the_text_of_a_urdf_is_a_robot_whose_meshes_are_looked_for_from_here(write, tmp_path, monkeypatch):
+    write(MESH, "meshes/m.stl")
+    monkeypatch.chdir(tmp_path)
+    robot = load_robot(f'<?xml version="1.0"?>\n{mesh("package://meshes/m.stl")}')
+    assert (robot.name, robot.frame, robot.source) == ("arm", "tip", None)
+    assert robot.collision_model.ngeoms == 1
+    with pytest.raises(InvalidModel, match="the URDF text is not well-formed XML") as caught:
+        load_robot(urdf()[:-20])
+    assert len(str(caught.value)) < 150
+
+
+def test_a_robot_may_come_as_mjcf(write, tmp_path):
+    for given in (write(MJCF, "arm.xml"), MJCF):
+        robot = load_robot(given)
+        assert (robot.name, robot.frame, robot.model.nv, robot.free_mimics) == ("arm", "tip", 2, ())
+        assert robot.collision_model.ngeoms == 1
+        assert robot.visual_model.ngeoms == 1
+        tip = Chain(robot.model, "tip").placements(np.array([0.0, 0.1]))[0]
+        np.testing.assert_allclose(tip.translation, [0.0, 0.1, 0.7], atol=1e-12)
+        assert description_of(robot.model) == robot.description
+    with pytest.raises(InvalidModel, match="by <freejoint/>"):
+        load_robot(MJCF, free_flyer=True)
+    with pytest.warns(UserWarning, match="has <equality>, which is not read"):
+        load_robot(MJCF.replace("</mujoco>", "<equality><joint joint1='j2' joint2='j1'/></equality></mujoco>"))
+    with pytest.raises(InvalidModel, match=r"not MJCF that can be read: No such node \(body\)"):
+        load_robot("<mujoco><worldbody/></mujoco>")
 
 
 def mesh(filename: str) -> str:
@@ -278,20 +335,11 @@ def follower(followed: str, kind: str) -> str:
     return urdf(limit, kind=followed, more=f'<link name="end"/>{joint}<mimic joint="j" multiplier="0.5"/></joint>')
 
 
-@pytest.mark.parametrize(
-    ("followed", "kind", "held"),
-    [
-        ("revolute", "revolute", True),
-        ("revolute", "prismatic", True),
-        ("continuous", "continuous", True),
-        ("continuous", "revolute", False),
-        ("revolute", "continuous", False),
-    ],
-)
-def test_a_continuous_joint_can_only_follow_and_be_followed_by_its_like(followed, kind, held, write):
+@pytest.mark.parametrize("followed", ["revolute", "continuous"])
+@pytest.mark.parametrize("kind", ["revolute", "prismatic", "continuous"])
+def test_joints_of_any_kind_follow_joints_that_turn(followed, kind, write):
     robot = load_robot(write(follower(followed, kind)))
-    assert robot.model.nv == (1 if held else 2)
-    assert robot.free_mimics == (() if held else ("k",))
+    assert (robot.model.nq, robot.model.nv, robot.free_mimics) == (1, 1, ())
 
 
 def test_whatever_is_listed_can_be_loaded_as_it_is_listed() -> None:

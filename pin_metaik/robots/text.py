@@ -1,0 +1,96 @@
+"""What a robot's file says: bytes to text in whatever encoding, text to a tree as forgivingly as the URDF parser.
+
+TinyXML2, which reads URDF for Pinocchio, takes what strict XML forbids and people's files have: prefixes nobody
+declared, blank lines and text before the declaration, ``--`` inside comments, a bare ``&`` or ``<`` in a value, control
+characters, elements beside the root. Expat is strict, so it is given the outermost ``<robot>`` alone, escaped, and
+without its handling of namespaces.
+"""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ET
+from pathlib import Path
+from xml.parsers import expat
+
+from pin_metaik.errors import InvalidModel
+
+_MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
+_WIDE = {b"<\0": "utf-16-le", b"\0<": "utf-16-be"}  # UTF-16 without its mark
+_DECLARED = re.compile(rb"""<\?xml[^>]*encoding\s*=\s*["']([\w.:-]+)["']""")
+_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_AMPERSAND = re.compile(r"&(?!(?:amp|lt|gt|quot|apos|#\d+|#x[0-9a-fA-F]+);)")
+_VALUE = re.compile(r"""=\s*(?:"[^"]*"|'[^']*')""")
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
+_ELEMENT = re.compile(r"<([A-Za-z_][\w.:-]*)")
+
+
+def read_text(path: Path) -> str:
+    """Text of a robot's file, in any encoding that it declares or shows.
+
+    Raises:
+        InvalidModel: If there is no such file, it cannot be read, or is not text.
+    """
+    try:
+        text = decoded(path.read_bytes())
+    except OSError as error:
+        raise InvalidModel(f"cannot read {path}: {error.strerror}") from None
+    if "\0" in text:
+        raise InvalidModel(f"{path} is not a URDF: it is not text")
+    return text
+
+
+def decoded(content: bytes) -> str:
+    """Bytes as text: by their mark, else as declared, else UTF-8, else Latin-1, which takes everything."""
+    declared = _DECLARED.search(content[:1024])
+    guesses = [code for mark, code in _MARKS.items() if content.startswith(mark)]
+    guesses += [code for start, code in _WIDE.items() if content.lstrip(b" \t\r\n")[:2] == start]
+    guesses += [declared.group(1).decode("ascii")] if declared else []
+    for encoding in (*guesses, "utf-8"):
+        try:
+            text = content.decode(encoding)
+        except (UnicodeDecodeError, LookupError):
+            continue
+        if "<" in text or encoding == "utf-8":  # a wrong declaration of UTF-16 makes other letters, not an error
+            return text
+    return content.decode("latin-1")
+
+
+def outermost(text: str) -> str:
+    """Name of the first element, empty if there is none."""
+    found = _ELEMENT.search(_COMMENT.sub("", text))
+    return found.group(1) if found else ""
+
+
+def parsed(text: str, what: str) -> ET.Element:
+    """The outermost ``<robot>`` of a URDF text; prefixes stay in the names, as in ``sensor:camera``.
+
+    Args:
+        text: The text.
+        what: The file, for messages.
+
+    Raises:
+        InvalidModel: If there is no ``<robot>``, or its elements do not close; the message has the line.
+    """
+    text = _COMMENT.sub(lambda comment: "\n" * comment.group().count("\n"), text)
+    start = re.search(r"<robot(?![\w.:-])", text)
+    if start is None:
+        first = outermost(text)
+        wrong = f"its outermost element is <{first}>, not <robot>" if first else "it has no XML element <robot>"
+        raise InvalidModel(f"{what} is not a URDF: {wrong}")
+    end = text.rfind("</robot>")
+    body = text[start.start() : end + len("</robot>") if end > 0 else None]
+    body = _AMPERSAND.sub("&amp;", _CONTROL.sub("", body))
+    body = _VALUE.sub(lambda value: value.group().replace("<", "&lt;"), body)
+
+    builder = ET.TreeBuilder()
+    parser = expat.ParserCreate()
+    parser.buffer_text = True
+    parser.StartElementHandler = builder.start
+    parser.EndElementHandler = builder.end
+    parser.CharacterDataHandler = builder.data
+    try:
+        parser.Parse("\n" * text.count("\n", 0, start.start()) + body, True)
+    except expat.ExpatError as error:
+        raise InvalidModel(f"{what} is not well-formed XML: {error}") from None
+    return builder.close()
