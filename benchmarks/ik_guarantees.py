@@ -129,6 +129,25 @@ def every_robot(count: int) -> Row:
     return f"every robot by name: {asked_for}", f"missed: {len(missed)}" + f" ({', '.join(missed)})" * bool(missed)
 
 
+def never_unreachable(count: int) -> Row:
+    """Of targets that a configuration meets, at tolerances from 1e-9 on, how many are proved to be out of reach."""
+    rng = np.random.default_rng(13)
+    wrong = asked = 0
+    for robot in track(ROBOTS, "feasible targets", transient=True):
+        chain = chain_of(robot)
+        X = chain.box.sample(rng, count)
+        ends = np.where(rng.random(X.shape) < 0.5, chain.box.lower, chain.box.upper)
+        X = np.where(rng.random(X.shape) < rng.choice([0.0, 0.5, 1.0], (count, 1)), ends, X)
+        for q in chain.q(X):
+            pose = chain.placements(q)[0]
+            near, aligned = 10.0 ** rng.uniform(-9, -1), 10.0 ** rng.uniform(-9, 0)
+            offset, turn = (v / np.linalg.norm(v) for v in rng.standard_normal((2, 3)))
+            error = pin.SE3(pin.exp3(0.95 * aligned * turn), 0.95 * near * offset)
+            problem = mik.IKProblem.of(chain, mik.Target(pose * error.inverse(), None, near, aligned))
+            asked, wrong = asked + 1, wrong + (problem.accepts(q) and problem.gap > 0.0)
+    return f"{asked:,} targets that a configuration meets by 5 % of the tolerance", f"proved unreachable: {wrong}"
+
+
 def fingerprint(count: int) -> str:
     """Of the answers of all robots, alone and in batches with one worker and with two, which must be the same bits."""
     digest = hashlib.sha256()
@@ -195,6 +214,7 @@ def rows(options: argparse.Namespace) -> Iterator[Row]:
     yield nearest("ur5", options.poses)
     yield from paths()
     yield every_robot(options.poses)
+    yield never_unreachable(20 * options.poses)
     yield repeatable(options.poses)
     yield two_hands(2 * options.poses)
     yield quadratic_programs(2 * options.poses)

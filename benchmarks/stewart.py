@@ -117,7 +117,10 @@ def assemblies(platforms: int = 2000) -> Iterator[str]:
         images = mirror @ every.poses @ mirror
         unpaired += sum(bool(np.abs(every.poses - image).max(axis=(1, 2)).min() > 1e-6) for image in images)
         worst = max(worst, float(np.abs(stewart.leg_lengths(geometry, every) - lengths).max()))
-    yield "| random 6x6 | assemblies | not complete | own pose missed | without mirror image | largest error m | ms |"
+    yield (
+        "| random 6x6 | assemblies | not proved complete | own pose not found | without mirror image | largest error m "
+        "| ms |"
+    )
     yield "|---|---|---|---|---|---|---|"
     numbers = f"{found} | {incomplete} | {lost} | {unpaired} | {worst:.1e}"
     yield f"| {platforms} | {numbers} | {1e3 * seconds / platforms:.1f} |"
@@ -148,8 +151,8 @@ def narrow() -> Iterator[str]:
         found = stewart.design(stewart.Mechanism("narrow", start, stewart.LegLimits(*legs), task=task))
         seconds = process_time() - began
         plain = plain_volume(found.mechanism) / (2 * found.mechanism.limits.stroke) ** 3
-        numbers = f"{found.score.workspace:.4f} | {plain:.4f} | {seconds:.1f}"
-        yield f"| {kind} | {1e3 * legs[0]:g} to {1e3 * legs[1]:g} | {numbers} |"
+        span = f"{1e3 * legs[0]:g} to {1e3 * legs[1]:g}"
+        yield f"| {kind} | {span} | {found.score.workspace:.4f} | {plain:.4f} | {seconds:.1f} |"
 
 
 def plain_volume(mechanism: stewart.Mechanism, cells: int = 60) -> float:

@@ -1,20 +1,20 @@
-"""Look at the world in a browser, through Pinocchio's viser visualizer: pip install 'pin-metaik[viewer]'.
+"""Look at the world in a browser, through Pinocchio's viser visualizer: pip install '.[viewer]'.
 
-python examples/11_look_at_the_world.py --stay                 # then open the address it prints
-python examples/11_look_at_the_world.py --picture shelf.png    # takes a picture with the browser that is looking
+python examples/11_look_at_the_world.py --stay                 # then open the address it prints; Ctrl-C ends it
+python examples/11_look_at_the_world.py --picture shelf.png    # takes a picture with the browser that looks
 """
 
 import argparse
+import sys
 import time
-from typing import Any
 
-import matplotlib.image
 import numpy as np
 import pinocchio as pin
+from PIL import Image, ImageDraw, ImageFont
 
 import pin_metaik as mik
 from pin_metaik.collision import load_scene
-from pin_metaik.collision.viewer import open_viewer
+from pin_metaik.collision.viewer import WorldViewer, open_viewer
 
 
 def main() -> None:
@@ -33,26 +33,31 @@ def main() -> None:
     print("without the world:", "; ".join(map(str, world.pairs_in_collision(alone.q))))
     print("in the world:     ", clear)
 
-    viewer = open_viewer(world, options.port)
+    viewer = open_viewer(world, options.port, frame=robot.frame)
+    viewer.show_target(deep_in_the_shelf)
     viewer.display(clear.q)
     if options.picture:
-        matplotlib.image.imsave(options.picture, np.hstack([photograph(viewer, q) for q in (alone.q, clear.q)]))
+        panels = [panel(viewer, q, world) for q in (alone.q, clear.q)]
+        Image.fromarray(np.hstack(panels)).save(options.picture)
+    elif not options.stay:
+        print("nobody will have seen it: --stay keeps the page open until Ctrl-C")
     while options.stay:
         for q in (alone.q, clear.q):
             viewer.display(q)
             time.sleep(2.0)
 
 
-def photograph(viewer: Any, q: np.ndarray) -> np.ndarray:
-    """What the first browser that looks sees of the robot at q, from behind it: red, green and blue (h, w, 3)."""
-    while not viewer.viewer.get_clients():
-        time.sleep(0.1)
-    client = next(iter(viewer.viewer.get_clients().values()))
-    client.camera.position, client.camera.look_at = (-0.15, -0.92, 0.9), (0.35, -0.06, 0.4)
+def panel(viewer: WorldViewer, q: np.ndarray, world: mik.CollisionWorld) -> np.ndarray:
+    """What the first browser that looks sees of the robot at q, with a title: red, green and blue (h, w, 3)."""
     viewer.display(q)
-    time.sleep(5.0)  # meshes are on their way
-    return np.asarray(client.get_render(height=640, width=720))[110:530, 140:680]
+    image = Image.fromarray(viewer.picture(720, 600, timeout=120.0))
+    title = "collides" if world.in_collision(q) else "free"
+    ImageDraw.Draw(image).text((24, 16), title, fill=(40, 40, 40), font=ImageFont.load_default(36))
+    return np.asarray(image)
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        sys.exit(130)

@@ -11,11 +11,9 @@ def cache_folder() -> Path | None:
 
     The folder may not exist yet, and may not be writable.
     """
-    if folder := os.environ.get("PIN_METAIK_CACHE"):
-        return Path(folder)
-    if folder := os.environ.get("XDG_CACHE_HOME"):
-        return Path(folder) / "pin_metaik"
     try:
-        return Path.home() / ".cache" / "pin_metaik"
+        if folder := os.environ.get("PIN_METAIK_CACHE"):
+            return Path(folder).expanduser()
+        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "pin_metaik"
     except RuntimeError:  # neither HOME nor an entry in the table of users, as in many containers
         return None

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import copyreg
+import json
 from collections.abc import Iterable
 from difflib import get_close_matches
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
 
 LISTED, NEAR = 100, 8  # longer lists than this are cut to the nearest names
 
 
 class MetaIKError(ValueError):
     """A call that makes no sense. A target that cannot be reached is not one: that is a status of the result."""
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle by message and values, whatever ``__init__`` takes: an error has to come back from a worker."""
+        return copyreg.__newobj__, (type(self), *self.args), self.__dict__  # type: ignore[attr-defined]
 
 
 class UnknownName(MetaIKError):
@@ -78,9 +87,29 @@ class InvalidGeometry(MetaIKError):
     """A shape that is not one: negative sizes, polygons that cross themselves, empty meshes."""
 
 
+class CannotWrite(MetaIKError):
+    """A file or a folder that is to be written, and cannot be."""
+
+
 class MissingExtra(MetaIKError):
     """A feature whose optional dependency is not installed."""
 
     def __init__(self, feature: str, extra: str) -> None:
         self.feature, self.extra = feature, extra
-        super().__init__(f"{feature} needs an optional dependency: pip install 'pin-metaik[{extra}]'")
+        super().__init__(f"{feature} needs an optional dependency: {installing(extra)}")
+
+
+def installing(extra: str) -> str:
+    """The command that installs an extra, for a package that was installed as this one was."""
+    try:
+        record = json.loads(distribution("pin-metaik").read_text("direct_url.json") or "{}")
+    except PackageNotFoundError:  # run from its sources
+        record = {"url": Path(__file__).parents[1].as_uri(), "dir_info": {}}
+    url = record.get("url")
+    if url is None:  # from an index
+        return f"pip install 'pin-metaik[{extra}]'"
+    if "dir_info" not in record:  # a wheel, or a repository
+        version_control = record.get("vcs_info", {}).get("vcs")
+        return f"pip install 'pin-metaik[{extra}] @ {f'{version_control}+' if version_control else ''}{url}'"
+    editable = "--editable " if record["dir_info"].get("editable") else ""
+    return f"pip install {editable}'.[{extra}]' in {unquote(urlsplit(url).path)}"

@@ -3,19 +3,33 @@
 from __future__ import annotations
 
 import sys
+from typing import Annotated, Any, NoReturn
 
 import typer
 from rich.console import Console
+from typer.core import TyperGroup
 
+from pin_metaik import __version__
 from pin_metaik.cli import compare, demo, plan, reproduce, robots, solve, stewart
+from pin_metaik.cli.codes import INTERRUPTED, NONSENSE
 from pin_metaik.cli.many import ManyValues
 from pin_metaik.errors import MetaIKError
 
-SOLVED, NOT_SOLVED, NONSENSE = 0, 1, 2
+
+class Commands(TyperGroup):
+    """The commands, with the exit code for Ctrl-C that shells know."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command that was named."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            raise typer.Exit(INTERRUPTED) from None
+
 
 app = typer.Typer(
     name="pin-metaik",
-    help="Global inverse kinematics for Pinocchio.",
+    cls=Commands,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -33,10 +47,32 @@ app.command("plan")(plan.plan)
 app.add_typer(stewart.app, name="stewart")
 
 
+def _version(wanted: bool) -> None:
+    if wanted:
+        print(f"pin-metaik {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def main(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
+    ] = False,
+) -> None:
+    """Global inverse kinematics for Pinocchio."""
+
+
 def run() -> None:
-    """Entry point of the ``pin-metaik`` command."""
+    """Entry point of the ``pin-metaik`` command: what makes no sense becomes a line; what is left is a bug."""
     try:
         app()
     except MetaIKError as error:
-        Console(stderr=True).print(f"pin-metaik: {error}", style="red", markup=False, highlight=False, soft_wrap=True)
-        sys.exit(NONSENSE)
+        _refuse(str(error))
+    except OSError as error:  # of a file, mostly: full, gone, or not ours
+        reason = error.strerror or str(error) or type(error).__name__
+        _refuse(f"{error.filename}: {reason}" if error.filename else reason)
+
+
+def _refuse(why: str) -> NoReturn:
+    Console(stderr=True).print(f"pin-metaik: {why}", style="red", markup=False, highlight=False, soft_wrap=True)
+    sys.exit(NONSENSE)

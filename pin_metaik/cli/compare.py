@@ -11,12 +11,12 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from pin_metaik.cli.codes import INTERRUPTED
 from pin_metaik.cli.many import split
 from pin_metaik.compare import CASES, Suite, write_report
 from pin_metaik.compare import compare as run
 from pin_metaik.compare import replay as again
-
-INTERRUPTED = 130  # what shells make of Ctrl-C
+from pin_metaik.interrupts import kept
 
 
 class Backend(StrEnum):
@@ -41,21 +41,23 @@ def compare(
     seeds: Annotated[int, typer.Option(min=1, help="Repetitions of each method on each task.")] = 1,
     budget: Annotated[int, typer.Option(min=1, help="Kernel evaluations for each target.")] = 5000,
     rng: Annotated[int, typer.Option(min=0, help="Seed of everything random.")] = 0,
-    jobs: Annotated[int, typer.Option(help="Processes; -1: one a core. The rows do not depend on it.")] = 1,
+    jobs: Annotated[int, typer.Option(help="Processes, 1 or more; -1: one a core. The rows do not depend on it.")] = 1,
     backend: Annotated[Backend, typer.Option(help="Processes here, or a Dask cluster.")] = Backend.LOKY,
     scheduler: Annotated[str | None, typer.Option(help="Of the Dask cluster, e.g. tcp://localhost:8786.")] = None,
 ) -> None:
     """Compare methods on hard cases at equal budgets. Ctrl-C loses nothing: the same command goes on."""
     sys.path.insert(0, "")  # module:object may be in the folder one is in
     suite = Suite(split(robot), split(cases), split(methods), targets, seeds, budget, rng)
-    outcome = run(
-        suite,
-        out,
-        jobs=jobs,
-        backend=backend.value,
-        scheduler=scheduler,
-        command=join(["pin-metaik", *sys.argv[1:]]),
-        console=Console(stderr=True),
+    outcome = kept(
+        lambda: run(
+            suite,
+            out,
+            jobs=jobs,
+            backend=backend.value,
+            scheduler=scheduler,
+            command=join(["pin-metaik", *sys.argv[1:]]),
+            console=Console(stderr=True),
+        )
     )
     console = Console(highlight=False)
     console.print(str(outcome), style="yellow" if outcome.partial else None, markup=False, soft_wrap=True)
@@ -65,7 +67,8 @@ def compare(
 
 def report(folder: Annotated[Path, typer.Argument(help="Folder of a comparison, finished or not.")]) -> None:
     """Write the report on a comparison: one HTML page, and Markdown with tables and figures beside it."""
-    page, markdown, *others = write_report(folder)
+    with Console(stderr=True).status(f"writing the report on {folder} ..."):
+        page, markdown, *others = write_report(folder)
     print(page)
     print(markdown, f"and {len(others)} tables and figures")
 

@@ -29,7 +29,10 @@ METHODS = {
 
 
 def demo() -> None:
-    """Solve the RV-7FL paper's three cases with each seeder, alone and refined, and a Panda and a UR5 pose."""
+    """Solve a few poses with every seeder, and show a table.
+
+    Three cases of the RV-7FL paper, each seeder alone and refined, and a Panda and a UR5 pose.
+    """
     console = Console(highlight=False)
     table = Table(box=None)
     table.add_column("target")

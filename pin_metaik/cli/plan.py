@@ -6,6 +6,7 @@ import json
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,13 +14,18 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from pin_metaik.cli.codes import INTERRUPTED
+from pin_metaik.cli.versions import versions
 from pin_metaik.compare.report.write import need_figures
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.interrupts import kept
 from pin_metaik.optimize import ALGORITHMS, AskTell, Budget
+from pin_metaik.output import writable
 
 if TYPE_CHECKING:  # shapely is an extra, and none of the other commands should wait for it
     from pin_metaik.mobile import PathPlan, Scene, SynchroDrive, TrajectoryPlan
 
+UNITS = {"length": "that of the scene, m with a trajectory", "angle": "rad", "time": "s"}
 MARGIN = 0.1  # m, when a trajectory is wanted: curves need room inside the corners
 RANDOM = "random:"
 TRAJECTORIES = ("dp", "de", "ann")
@@ -61,11 +67,16 @@ def plan(
     figures: Annotated[bool, typer.Option(help="Draw figures into --out; needs the extra plots.")] = True,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Plan a path among obstacles. Exit code 0: planned, 1: what was found collides, 2: the call makes no sense."""
+    """Plan a path among obstacles. Ctrl-C keeps the best so far.
+
+    Exit code 0: planned, 1: what was found collides, 2: the call makes no sense, 130: interrupted.
+    """
     from pin_metaik import mobile
 
-    if out is not None and figures:
-        need_figures()
+    if out is not None:
+        writable(out, folder=True)
+        if figures:
+            need_figures()
     if trajectory is not None and trajectory not in TRAJECTORIES:
         raise InvalidSetting(f"no trajectory {trajectory!r}; known: {', '.join(TRAJECTORIES)}")
     if paths > 1 and method != "exact":
@@ -75,26 +86,33 @@ def plan(
     room = margin if margin is not None else MARGIN if trajectory else 0.0
     world = _scene(scene, start, goal, keep + room)
     problem = mobile.PathProblem.of(world, keep, room, join)  # type: ignore[arg-type]  # it checks the join itself
+    _warm_up()
     with _progress("path") as tick:
-        path = mobile.plan_path(
-            problem,
-            method,
-            fitness=fitness,
-            via=via,
-            budget=Budget(evaluations=evaluations),
-            rng=rng,
-            seeded=seeded,
-            callback=tick,
+        path = kept(
+            lambda: mobile.plan_path(
+                problem,
+                method,
+                fitness=fitness,
+                via=via,
+                budget=Budget(evaluations=evaluations),
+                rng=rng,
+                seeded=seeded,
+                callback=tick,
+            )
         )
     plans = mobile.plan_alternatives(problem, paths) if paths > 1 else [path]
-    motions = list(_motions(plans, robot, keep, trajectory, rng)) if trajectory and path.success else []
+    motions = (
+        list(_motions(plans, robot, keep, trajectory, rng))
+        if trajectory and path.success and not path.interrupted
+        else []
+    )
     best = min(range(len(motions)), key=lambda i: (not motions[i].success, motions[i].time), default=0)
     motion = motions[best] if motions else None
 
     found = plans[best].as_dict()
     if len(plans) > 1:
         found["alternatives"] = [each.as_dict() for i, each in enumerate(plans) if i != best]
-    report: dict[str, Any] = {"path": found}
+    report: dict[str, Any] = {"versions": versions(), "units": UNITS, "path": found}
     if motion is not None:
         report["trajectory"] = {key: value for key, value in motion.as_dict().items() if key != "samples"}
     if as_json:
@@ -104,7 +122,17 @@ def plan(
     if out is not None:
         for file in _write(out, plans, best, found, motion, figures):
             Console(stderr=as_json).print(str(file), markup=False, highlight=False, soft_wrap=True)
+    if path.interrupted or any(each.interrupted for each in motions):
+        raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if path.success and (motion is None or motion.success) else 1)
+
+
+def _warm_up() -> None:
+    """Plan round a box, so that what is compiled and imported once is not in the times shown."""
+    from pin_metaik import mobile
+
+    box = mobile.read_polygons([[(1.0, -1.0), (2.0, -1.0), (2.0, 1.0), (1.0, 1.0)]])
+    mobile.plan_path(mobile.Scene((0.0, 0.0), (3.0, 0.0), box))
 
 
 def _scene(source: str, start: Place, goal: Place, clearance: float) -> Scene:
@@ -129,7 +157,8 @@ def _motions(
     for plan in plans:
         with _progress("trajectory") as tick, warnings.catch_warnings():
             warnings.simplefilter("ignore", OutsideTraining)  # the plan's notes say it
-            yield mobile.plan_trajectory(
+            search = partial(
+                mobile.plan_trajectory,
                 plan.path,
                 robot,
                 plan.problem.scene.obstacles,
@@ -139,11 +168,15 @@ def _motions(
                 model=model,
                 callback=tick,
             )
+            motion = kept(search)
+        yield motion
+        if motion.interrupted:
+            return
 
 
 @contextmanager
 def _progress(name: str) -> Iterator[Tick]:
-    """A bar on the terminal that follows a search; Ctrl-C is the search's own business: it keeps the best."""
+    """A bar on the terminal that follows a search."""
     columns = (TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(name, total=1.0)

@@ -10,14 +10,16 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from pin_metaik.cli.codes import INTERRUPTED
 from pin_metaik.compare import papers
 from pin_metaik.compare.papers import PAPERS, Options, Reproduction
 from pin_metaik.compare.report.show import show
 from pin_metaik.compare.report.write import need_figures, write
 from pin_metaik.errors import UnknownName
+from pin_metaik.interrupts import kept
+from pin_metaik.output import writable
 
 QUICK_RUNS = 3
-INTERRUPTED = 130  # what shells make of Ctrl-C
 WIDE = 150  # columns for files and pipes, which have no width
 
 
@@ -40,12 +42,12 @@ def reproduce(
     if out is not None:
         if figures:
             need_figures()
-        out.mkdir(parents=True, exist_ok=True)
+        writable(out, folder=True)
     paper = PAPERS[name]
     options = Options(runs or (min(QUICK_RUNS, paper.runs) if quick else paper.runs), quick, long, rng)
     console = Console(width=None if sys.stdout.isatty() else WIDE)
     console.print(f"{paper.title}\n{paper.source}", markup=False, highlight=False)
-    again = papers.reproduce(paper, options, Console(stderr=True))
+    again = kept(lambda: papers.reproduce(paper, options, Console(stderr=True)))
     show(again.sections, console)
     console.print(f"\n{again}", style="yellow" if again.partial else None, markup=False, highlight=False)
     if out is not None:

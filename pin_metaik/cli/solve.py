@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
-from math import degrees, radians
+import sys
+from collections.abc import Iterable
+from dataclasses import replace
+from math import degrees, radians, tau
 from typing import Annotated
 
 import numpy as np
@@ -11,14 +14,20 @@ import typer
 from numpy.typing import NDArray
 from rich.console import Console
 
+from pin_metaik.cli.many import split
+from pin_metaik.cli.start import configuration, turns
+from pin_metaik.cli.versions import versions
 from pin_metaik.collision import CollisionWorld, load_scene, scene_names
 from pin_metaik.errors import InvalidSetting, InvalidTarget
 from pin_metaik.ik import REFINERS, IKResult, IKSolver, Target, solve_ik
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.pose import rpy_matrix
 from pin_metaik.optimize import ALGORITHMS, Budget
-from pin_metaik.robots import load_robot
+from pin_metaik.robots import Robot, load_robot
 
+ALONE = "alone"
+"""As a scene: the robot with itself, and nothing around it."""
+WARM = Budget(evaluations=64)
 SEEDERS = f"auto, none, {', '.join(ALGORITHMS)}"
 
 
@@ -32,37 +41,79 @@ def solve(
         typer.Option(metavar="R P Y", help="Target orientation Rz(Y) Ry(P) Rx(R) in radians; without it: any."),
     ] = None,
     frame: Annotated[str | None, typer.Option(help="The frame to place; default: the robot's tip.")] = None,
+    lock: Annotated[
+        list[str] | None, typer.Option(metavar="JOINT", help="A joint that stays where --q0 has it; may be repeated.")
+    ] = None,
+    q0: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="JOINT=VALUE", help="Where to start, by joint, or all entries of q; with commas, or repeated."
+        ),
+    ] = None,
     seeder: Annotated[str, typer.Option(help=f"Where starts come from: {SEEDERS}.")] = "auto",
     refiner: Annotated[str, typer.Option(help=f"What refines them: {', '.join(REFINERS)} or none.")] = "dls",
     evaluations: Annotated[int, typer.Option(help="Forward kinematics that may be spent.")] = 50_000,
     world: Annotated[
         str | None,
-        typer.Option(help=f"Avoid collisions with itself and a scene (.toml, or one of: {', '.join(scene_names())})."),
+        typer.Option(
+            help=f"Avoid collisions with itself and a scene: .toml, one of {', '.join(scene_names())}, or {ALONE}."
+        ),
+    ] = None,
+    srdf: Annotated[
+        str | None,
+        typer.Option(help="In the world: pairs of links not to check; default: the robot's own file."),
+    ] = None,
+    allow: Annotated[
+        list[str] | None, typer.Option(metavar="A,B", help="In the world: a pair that may collide; may be repeated.")
     ] = None,
     margin: Annotated[float | None, typer.Option(help="Distance to keep from everything in the world, m.")] = None,
     rng: Annotated[int, typer.Option(min=0, help="Seed of every random choice.")] = 0,
-    in_degrees: Annotated[bool, typer.Option("--degrees", help="Angles in degrees: --rpy and the printed q.")] = False,
+    in_degrees: Annotated[bool, typer.Option("--degrees", help="Angles in degrees, given and shown.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Solve for one target. Exit code 0: solved, 1: not solved, 2: the call makes no sense."""
     if position is None and rpy is None:
         raise InvalidTarget("nothing to reach: give --position X Y Z, --rpy R P Y, or both")
-    if margin is not None and world is None:
-        raise InvalidSetting("a margin is kept in a world: give --world, too")
+    for option, value in (("--margin", margin), ("--srdf", srdf), ("--allow", allow)):
+        if value and world is None:
+            raise InvalidSetting(f"{option} is about a world: give --world, too, e.g. --world {ALONE}")
     loaded = load_robot(robot)
-    chain = Chain(loaded.model, frame or loaded.frame)
+    chain = Chain(loaded.model, loaded.frame if frame is None else frame, locked=split(lock or ()))
+    start = configuration(loaded.model, split(q0), chain.reference, in_degrees) if q0 else None
     solver = IKSolver(
         None if seeder == "none" else seeder,
         None if refiner == "none" else refiner,
         Budget(evaluations=evaluations),
     )
-    obstacles = None if world is None else CollisionWorld(loaded, load_scene(world), margin or 0.0)
-    result = solve_ik(chain, _target(position, rpy, in_degrees), solver=solver, world=obstacles, rng=rng)
+    obstacles = None if world is None else _world(loaded, world, margin or 0.0, srdf, allow or ())
+    target = _target(position, rpy, in_degrees)
+    if not in_degrees and any(abs(angle) > tau for angle in rpy or ()):
+        print("pin-metaik: --rpy is in radians; for degrees give --degrees, too", file=sys.stderr)
+    _warm_up(chain, target, solver)
+    result = solve_ik(chain, target, start, solver=solver, world=obstacles, rng=rng)
     if as_json:
         print(json.dumps(report(loaded.name, chain, result, in_degrees), allow_nan=False))
     else:
         show(loaded.name, chain, result, in_degrees)
     raise typer.Exit(0 if result.success else 1)
+
+
+def _world(robot: Robot, scene: str, margin: float, srdf: str | None, allowed: Iterable[str]) -> CollisionWorld:
+    """The robot among the obstacles of a scene, or alone."""
+    world = CollisionWorld(robot, () if scene == ALONE else load_scene(scene), margin, srdf)
+    for pair in allowed:
+        names = split([pair])
+        if len(names) != 2:
+            raise InvalidSetting(f"--allow takes two names with a comma between them, A,B, got {pair!r}")
+        world.allow(*names)
+    return world
+
+
+def _warm_up(chain: Chain, target: Target, solver: IKSolver) -> None:
+    """Solve for where the chain is already, so that what is compiled and tabulated once is not in the time shown."""
+    pose = chain.placements(chain.reference)[0]
+    there = replace(target, pose=pose)
+    solve_ik(chain, there, chain.reference, solver=replace(solver, select="first", budget=WARM))
 
 
 def _target(
@@ -80,12 +131,18 @@ def _target(
 
 
 def report(robot: str, chain: Chain, result: IKResult, in_degrees: bool) -> dict[str, object]:
-    """A result as plain values; q is Pinocchio's whole configuration, joints the chain's coordinates by name."""
+    """A result as plain values; q is Pinocchio's whole configuration, joints the chain's coordinates by name.
+
+    Angles are in the unit that "units" names, in q and in joints alike.
+    """
     return {
+        "versions": versions(),
+        "units": {"length": "m", "angle": "deg" if in_degrees else "rad", "orientation_error": "rad", "time": "s"},
         "robot": robot,
         "frame": chain.frames[0],
         "status": str(result.status),
         "success": result.success,
+        "why": result.why,
         "q": _angles(chain, result, in_degrees),
         "joints": dict(zip(chain.names, _shown(chain, result.x, in_degrees), strict=True)),
         "position_error": result.position_error,
@@ -116,9 +173,10 @@ def _shown(chain: Chain, x: NDArray[np.float64], in_degrees: bool) -> list[float
 
 
 def _angles(chain: Chain, result: IKResult, in_degrees: bool) -> list[float]:
-    """The entries of q; in degrees the chain's angles (the cos and sin of a continuous joint stay as they are)."""
-    q = result.q.copy()
+    """The entries of q; in degrees what is an angle (the cos and sin of a continuous joint stay as they are)."""
+    q = result.q.tolist()
     if in_degrees:
-        at = chain.coordinates
-        q[at.plain_q] = np.array(_shown(chain, result.x, True))[at.plain]
+        for joint in list(chain.model.joints)[1:]:
+            if joint.nq == 1 and turns(joint):
+                q[joint.idx_q] = degrees(q[joint.idx_q])
     return [float(v) for v in q]

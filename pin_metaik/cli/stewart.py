@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from dataclasses import replace
 from math import radians
 from pathlib import Path
@@ -14,11 +13,15 @@ import typer
 from rich.console import Console
 
 from pin_metaik import stewart
+from pin_metaik.cli.codes import INTERRUPTED
 from pin_metaik.cli.settings import configured
-from pin_metaik.errors import InvalidSetting, InvalidTarget
+from pin_metaik.errors import InvalidTarget
+from pin_metaik.interrupts import kept
 from pin_metaik.optimize import ALGORITHMS
+from pin_metaik.output import writable
 from pin_metaik.stewart import Mechanism, Verdict
 from pin_metaik.stewart.conditioning import NORMS
+from pin_metaik.stewart.picture import picture_file
 from pin_metaik.stewart.report import (
     Lines,
     along,
@@ -43,7 +46,6 @@ Picture = Annotated[Path | None, typer.Option(help="Also draw it and its workspa
 Norm = Annotated[str | None, typer.Option(help=f"Of the dexterity, instead of the file's: {', '.join(NORMS)}.")]
 Length = Annotated[str | None, typer.Option(help="Characteristic length: rm, best, or in the file's unit.")]
 Cells = Annotated[int | None, typer.Option(min=1, help="Cells along each axis, instead of the file's.")]
-INTERRUPTED = 130  # what shells make of Ctrl-C
 INDICES = ", ".join(get_args(Index))
 
 
@@ -72,13 +74,13 @@ def analyse(
     mechanism = _measured(stewart.load_mechanism(file), norm, length)
     if cells is not None:
         mechanism = replace(mechanism, grid=replace(mechanism.grid, counts=(cells, cells, cells)))
-    _can_write(picture)
+    _can_write(picture=picture)
     T = None if pose is None else _pose(mechanism, pose)
     if to is not None and T is None:
         raise InvalidTarget("a way needs both ends: give --pose as well as --to")
     way = None if to is None or T is None else stewart.straight(T, _pose(mechanism, to), seconds)
     with stewart.progress_bar("surveying") as watch:
-        workspace = mechanism.survey(watch=watch)
+        workspace = kept(lambda: mechanism.survey(watch=watch))
     if picture is not None:
         stewart.save_picture(stewart.draw(mechanism, workspace, T), picture)
     if as_json:
@@ -148,9 +150,9 @@ def design(
         if cells is not None:
             changed["grid"] = replace(mechanism.task.grid, counts=(cells, cells, cells))
         mechanism = replace(mechanism, task=replace(mechanism.task, **changed))
-    _can_write(output, history, picture)
+    _can_write(output, history, picture=picture)
     with stewart.progress_bar("designing") as watch:
-        found = stewart.design(mechanism, watch=watch)
+        found = kept(lambda: stewart.design(mechanism, watch=watch))
     workspace = found.mechanism.survey() if found.success else None
     if history is not None:
         np.savetxt(history, found.history, "%.17g", ",", header="designs,fitness", comments="")
@@ -184,7 +186,7 @@ def show(
 ) -> None:
     """Its dimensions and limits; draw it, or write it for other tools."""
     mechanism = stewart.load_mechanism(file)
-    _can_write(output, urdf)
+    _can_write(urdf, picture=output)
     if urdf is not None:
         stewart.save_urdf(mechanism, urdf)
     if output is not None:
@@ -231,10 +233,10 @@ def _show(title: str, lines: Lines) -> None:
         console.print(f"  {label:20} {value}", markup=False, soft_wrap=True)
 
 
-def _can_write(*paths: Path | None) -> None:
-    """Look whether files can be written, before the work that they are for."""
-    for path in paths:
-        if path is None:
-            continue
-        if not path.parent.is_dir() or not os.access(path if path.exists() else path.parent, os.W_OK):
-            raise InvalidSetting(f"{path} cannot be written")
+def _can_write(*files: Path | None, picture: Path | None = None) -> None:
+    """Look whether files can be written, and a picture drawn, before the work that they are for."""
+    for file in files:
+        if file is not None:
+            writable(file)
+    if picture is not None:
+        picture_file(picture)

@@ -1,54 +1,65 @@
-"""Checks in two layers: coarse solids first; where they touch, the geometry as it is has the last word.
+"""Checks in three steps: boxes, then coarse solids, then the geometry as it is, which has the last word.
 
-Free of the coarse solids is free: they enclose. So the answers are those of the original geometry at the price, nearly
-always, of the coarse one.
+What is free of the boxes, or of the coarse solids, is free: they enclose. So the answers are those of the original
+geometry at the price, nearly always, of the coarse one.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Container
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from functools import cached_property
 
-import coal
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
 from pin_metaik.collision.body import Body
 from pin_metaik.collision.contact import Contact, Distance, Near
-from pin_metaik.collision.layer import Layer
+from pin_metaik.collision.narrow import TOUCH
+from pin_metaik.collision.solids import Level, Pairs, Placed, Solids
+
+ENCLOSED = 1e-6  # m added to the margin of coarse solids: what coal's distances may be off by
+NEAR = 0.05  # m beyond the margin: pairs farther apart do not concern a step
+REACH = 0.1, 0.5, math.inf  # m; how far the nearest pair is looked for, when no boxes overlap
 
 
 @dataclass(frozen=True, eq=False)
 class Checker:
-    """The pairs of bodies that move against each other, and their two layers.
+    """The pairs of bodies that move against each other, and what is asked of each.
 
     Attributes:
-        bodies: All bodies.
-        pairs: Numbers of the two bodies of each pair; those that collide most often come first.
-        coarse: The first layer ...
-        fine: ... and the second, with the same pairs.
-        wide: The first again, with more margin: what is near.
+        solids: All bodies; those that move are numbered first.
+        asked: The pairs; those of bodies that move stand in the order of how often they collide.
+        direct: For each pair of bodies that move, whether its coarse solids decide nothing and are left out.
         fixed: Contacts of what cannot move: then every configuration collides.
-        exact: Whether the second layer is asked.
+        exact: Whether the original geometry is asked.
     """
 
-    bodies: tuple[Body, ...]
-    pairs: tuple[tuple[int, int], ...]
-    coarse: Layer
-    fine: Layer
-    wide: Layer
+    solids: Solids
+    asked: Pairs
+    direct: tuple[bool, ...]
     fixed: tuple[Contact, ...]
     exact: bool
+
+    @property
+    def bodies(self) -> tuple[Body, ...]:
+        """All bodies."""
+        return (*self.solids.moving, *self.solids.standing)
+
+    @property
+    def pairs(self) -> tuple[tuple[int, int], ...]:
+        """Numbers of the two bodies of every pair."""
+        moving, standing = np.nonzero(self.asked.against)
+        own = [(i, j) for i, j in self.asked.own.tolist()]
+        return (*own, *zip(moving.tolist(), (len(self.solids.moving) + standing).tolist(), strict=True))
 
     def collides(self, q: NDArray[np.float64]) -> bool:
         """Whether anything collides at q (nq,)."""
         if self.fixed:
             return True
-        # The second layer as a whole: to read from Python which pairs of the first collide takes longer.
-        return self.coarse.collides(q) and (not self.exact or self.fine.collides(q))
+        placed = self.solids.place(q)
+        return any(self._collide(placed, i, j, own) for i, j, own in placed.near(self.asked))
 
     def contacts(self, q: NDArray[np.float64]) -> tuple[Contact, ...]:
         """What collides at q (nq,), the deepest first; two bodies count once."""
@@ -66,74 +77,112 @@ class Checker:
 
         With ``joints`` only pairs that such joints carry, both of them.
         """
-        suspects = [k for k in self.coarse.colliding(q) if joints is None or all(j in joints for j in self._joints(k))]
+        placed = self.solids.place(q)
         found = []
-        for k in self._confirmed(q, suspects) if self.exact else suspects:
-            at = self._hulls(q, k)
-            depth = max(0.0, float(self.fine.margins[k]) - at.distance)
-            found.append((Contact(at.first, at.second, depth), self._joints(k)))
+        for i, j, own in placed.near(self.asked):
+            carriers = self._joint(i), self._joint(j)
+            wanted = joints is None or all(joint in joints for joint in carriers)
+            if wanted and self._collide(placed, i, j, own):
+                depth = max(0.0, self._margins[own] - self._hulls(placed, i, j).distance)
+                found.append((Contact(self._name(i), self._name(j), depth), carriers))
         return found
 
     def nearest(self, q: NDArray[np.float64]) -> Distance:
         """The two bodies nearest to each other at q (nq,), of all that move against each other."""
-        distances = self.coarse.distances(q)
-        if not self.exact:
-            return self._named(int(distances.argmin()), self.coarse.result(int(distances.argmin())))
+        placed = self.solids.place(q)
         best = Distance(math.inf, "", "", np.full(3, np.nan), np.full(3, np.nan))
-        self.fine.place(q)
-        for k in np.argsort(distances, kind="stable").tolist():
-            if distances[k] >= best.distance:
-                break  # coarse solids enclose: nothing beyond can be nearer
-            self.fine.distance(k)
-            at = self._named(k, self.fine.result(k))
-            if at.distance <= 0.0 or self.fine.touches(k):  # surfaces that cross have no depth; their hulls have
-                at = self._hulls(q, k)
-            best = min(best, at, key=lambda one: one.distance)
+        done = set()
+        for reach in (0.0, *REACH):
+            near = placed.near(self._bare, min(reach, best.distance))
+            least = placed.least(len(near)).copy()
+            for k in np.argsort(least, kind="stable").tolist():
+                i, j, own = near[k]
+                if least[k] >= best.distance:
+                    break
+                if (i, j) not in done:
+                    done.add((i, j))
+                    best = self._nearer(placed, i, j, own, best)
+            if best.distance <= reach:
+                break
         return best
 
     def depth(self, q: NDArray[np.float64]) -> float:
         """By how much (m, summed over the pairs) coarse solids undercut the margin at q: what a search descends on."""
-        margins = self.fine.margins
-        return sum(max(0.0, float(margins[k]) - self.coarse.distance(k)) for k in self.coarse.colliding(q))
+        placed = self.solids.place(q)
+        total = 0.0
+        for i, j, own in placed.near(self.asked):
+            a, b = self._first(i, j, own)
+            gap = placed.gap(a, b)
+            if gap <= 0.0 and (a.mesh or b.mesh):
+                gap = self._hulls(placed, i, j).distance
+            total += max(0.0, self._margins[own] - gap)
+        return total
 
     def near(self, q: NDArray[np.float64]) -> list[Near]:
         """The pairs of coarse solids that are near each other at q (nq,)."""
+        placed = self.solids.place(q)
         found = []
-        for k in self.wide.colliding(q):
-            distance, result = self.wide.distance(k), self.wide.result(k)
-            normal = np.array(result.normal)
-            if 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none
-                points = np.array(result.getNearestPoint1()), np.array(result.getNearestPoint2())
-                found.append(Near(distance - float(self.fine.margins[k]), normal, points, self._joints(k)))
+        for i, j, own in placed.near(self.asked, NEAR):
+            room = placed.distance(*self._first(i, j, own)) - self._margins[own]
+            normal = placed.normal
+            if room <= NEAR and 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none
+                found.append(Near(room, normal, placed.points, (self._joint(i), self._joint(j))))
         return found
 
-    def _confirmed(self, q: NDArray[np.float64], suspects: list[int]) -> list[int]:
-        """Those of the suspected pairs that collide in the second layer at q (nq,)."""
-        if suspects:
-            self.fine.place(q)
-        return [k for k in suspects if self.fine.touches(k)]
+    @cached_property
+    def _bare(self) -> Pairs:
+        """The pairs without their margins."""
+        return replace(self.asked, margins=np.zeros(len(self.asked.margins)), margin=0.0)
 
-    def _joints(self, pair: int) -> tuple[int, int]:
-        i, j = self.pairs[pair]
-        return self.bodies[i].joint, self.bodies[j].joint
+    @cached_property
+    def _margins(self) -> list[float]:
+        """The margins of the pairs that move, and last that of all others: row -1, m."""
+        return [*self.asked.margins.tolist(), self.asked.margin]
 
-    def _hulls(self, q: NDArray[np.float64], pair: int) -> Distance:
-        """Distance of the convex hulls of a pair at q (nq,)."""
-        data = self.fine.scratch.data
-        pin.forwardKinematics(self.fine.model, data, q)
-        bodies = [self.bodies[i] for i in self.pairs[pair]]
-        return hull_distance(*bodies, *(data.oMi[body.joint] * body.placement for body in bodies))
+    def _joint(self, number: int) -> int:
+        moving = self.solids.moving
+        return moving[number].joint if number < len(moving) else 0
 
-    def _named(self, pair: int, result: Any) -> Distance:
-        first, second = (self.bodies[i].link for i in self.pairs[pair])
-        points = np.array(result.getNearestPoint1()), np.array(result.getNearestPoint2())
-        return Distance(float(result.min_distance), first, second, *points)
+    def _name(self, number: int) -> str:
+        moving = self.solids.moving
+        return (moving[number] if number < len(moving) else self.solids.standing[number - len(moving)]).link
 
+    def _first(self, i: int, j: int, own: int) -> tuple[Level, Level]:
+        """The levels of two bodies that are asked first."""
+        a, b = self.solids.levels[i], self.solids.levels[j]
+        if own >= 0 and self.direct[own]:
+            return a.facing(b), b.facing(a)
+        return a.first(b), b.first(a)
 
-def hull_distance(a: Body, b: Body, M_a: pin.SE3, M_b: pin.SE3) -> Distance:
-    """Distance of the convex hulls of two bodies placed in the world; minus their depth when they overlap."""
-    result = coal.DistanceResult()
-    poses = [coal.Transform3s(M.rotation, M.translation) for M in (M_a, M_b)]
-    distance = coal.distance(a.solid.hull, poses[0], b.solid.hull, poses[1], coal.DistanceRequest(), result)
-    points = np.array(result.getNearestPoint1()), np.array(result.getNearestPoint2())
-    return Distance(float(distance), a.link, b.link, *points)
+    def _last(self, i: int, j: int) -> tuple[Level, Level]:
+        """The levels of two bodies that have the last word."""
+        a, b = self.solids.levels[i], self.solids.levels[j]
+        return a.facing(b), b.facing(a)
+
+    def _collide(self, placed: Placed, i: int, j: int, own: int) -> bool:
+        first, margin = self._first(i, j, own), self._margins[own]
+        last = self._last(i, j) if self.exact else first
+        if first[0].geometry is last[0].geometry and first[1].geometry is last[1].geometry:
+            return placed.overlap(*last, margin)
+        return placed.overlap(*first, margin + ENCLOSED) and placed.overlap(*last, margin)
+
+    def _nearer(self, placed: Placed, i: int, j: int, own: int, best: Distance) -> Distance:
+        """The distance of two bodies where it is less than the best, else that."""
+        first = self._first(i, j, own)
+        last = self._last(i, j) if self.exact else first
+        for levels in (first, last):
+            gap = placed.gap(*levels)
+            if gap > TOUCH and gap >= best.distance:
+                return best
+        solid = last[0].mesh is None and last[1].mesh is None
+        if solid or gap > TOUCH:
+            at = Distance(gap if gap > TOUCH else min(gap, 0.0), self._name(i), self._name(j), *placed.points)
+        else:  # surfaces that cross have no depth; their hulls have
+            at = self._hulls(placed, i, j)
+            at = replace(at, distance=min(at.distance, 0.0))
+        return min(best, at, key=lambda one: one.distance)
+
+    def _hulls(self, placed: Placed, i: int, j: int) -> Distance:
+        """Distance of the convex hulls of two bodies; minus their depth when they overlap."""
+        distance = placed.distance(self.solids.levels[i].hull, self.solids.levels[j].hull)
+        return Distance(distance, self._name(i), self._name(j), *placed.points)

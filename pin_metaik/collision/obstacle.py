@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
+from pin_metaik.collision.numbers import three
 from pin_metaik.collision.shapes import Shape
 from pin_metaik.errors import InvalidGeometry, InvalidTarget
-from pin_metaik.kinematics.pose import as_pose, as_position
+from pin_metaik.kinematics.pose import as_pose
+from pin_metaik.optimize.space import Box as SearchBox
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,26 +24,42 @@ class Obstacle:
     Attributes:
         name: A name that no link and no other obstacle has.
         shape: Its shape.
-        pose: Where it stands: ``pin.SE3``, (4, 4), or a position (3,); kept as ``pin.SE3``.
+        pose: Where it stands: ``pin.SE3``, (4, 4), or a position (3,); kept as ``pin.SE3``. Default: the origin.
         touching: Names of links and obstacles that may touch it.
 
     Raises:
-        InvalidGeometry: If the name is empty, the shape is none, or the pose is not finite and orthonormal.
+        InvalidGeometry: If the name is empty, the shape is none, the pose is not finite and orthonormal, or what may
+            touch it is not a list of names.
     """
 
     name: str
     shape: Shape
-    pose: pin.SE3
+    pose: pin.SE3 = (0.0, 0.0, 0.0)
     touching: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Check everything once, where it enters."""
         if not isinstance(self.name, str) or not self.name:
             raise InvalidGeometry(f"an obstacle has a name, got {self.name!r}")
+        if isinstance(self.shape, SearchBox):
+            raise InvalidGeometry(
+                f"the shape of {self.name!r} is a mik.Box, the bounds of a search; a solid one is "
+                "a mik.collision.Box(size)"
+            )
         if not isinstance(self.shape, Shape):
             raise InvalidGeometry(f"the shape of {self.name!r} is a Box, Sphere, ... or Mesh, got {self.shape!r}")
         object.__setattr__(self, "pose", placement(self.name, self.pose))
-        object.__setattr__(self, "touching", tuple(self.touching))
+        object.__setattr__(self, "touching", _names(self.name, self.touching))
+
+
+def _names(name: str, touching: Iterable[str]) -> tuple[str, ...]:
+    try:
+        names = (None,) if isinstance(touching, str | Mapping) else tuple(touching)
+    except TypeError:
+        names = (None,)
+    if not all(isinstance(one, str) for one in names):
+        raise InvalidGeometry(f"what may touch {name!r} is a list of names, got {touching!r}")
+    return cast(tuple[str, ...], names)
 
 
 def placement(name: str, pose: pin.SE3 | ArrayLike) -> pin.SE3:
@@ -48,9 +68,10 @@ def placement(name: str, pose: pin.SE3 | ArrayLike) -> pin.SE3:
     Raises:
         InvalidGeometry: If it is not finite or not orthonormal.
     """
+    position = None if isinstance(pose, pin.SE3) else three(pose)
+    if position is not None:
+        return pin.SE3(np.eye(3), np.array(position))
     try:
-        if isinstance(pose, pin.SE3) or np.shape(pose) != (3,):
-            return as_pose(pose).placement
-        return pin.SE3(np.eye(3), as_position(pose))
-    except InvalidTarget as error:
-        raise InvalidGeometry(f"the pose of {name!r}: {error}") from None
+        return as_pose(pose).placement
+    except (InvalidTarget, OverflowError) as error:
+        raise InvalidGeometry(f"the pose of {name!r} is a pose or a position (3,), finite: {error}") from None

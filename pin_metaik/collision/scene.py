@@ -1,33 +1,59 @@
-"""Scenes: obstacles in a TOML file; a few come with the package."""
+"""Scenes: obstacles in a TOML or JSON file; a few come with the package."""
 
 from __future__ import annotations
 
+import json
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import MISSING, fields
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
 from pin_metaik.collision.mesh import Mesh
+from pin_metaik.collision.numbers import three
 from pin_metaik.collision.obstacle import Obstacle
 from pin_metaik.collision.shapes import Box, Capsule, Cone, Cylinder, HalfSpace, Plane, Shape, Sphere
 from pin_metaik.errors import InvalidGeometry, UnknownName
 from pin_metaik.kinematics.pose import rpy_matrix
 
-SHAPES: dict[str, Callable[..., Shape]] = {
-    "box": Box,
-    "sphere": Sphere,
-    "cylinder": Cylinder,
-    "capsule": Capsule,
-    "cone": Cone,
-    "halfspace": HalfSpace,
-    "plane": Plane,
+
+class Kind(NamedTuple):
+    """A kind of shape as scenes have it.
+
+    Attributes:
+        make: What makes the shape, of the values of its keys.
+        needed: Keys that must be there.
+        known: All its keys. The value of ``file`` is a path relative to the scene's.
+    """
+
+    make: Callable[..., Shape]
+    needed: tuple[str, ...]
+    known: tuple[str, ...]
+
+
+def _sizes(shape: type[Shape]) -> Kind:
+    """A shape whose keys are its own fields."""
+    needed = tuple(field.name for field in fields(shape) if field.default is MISSING)
+    return Kind(shape, needed, tuple(field.name for field in fields(shape)))
+
+
+KINDS: dict[str, Kind] = {
+    "box": _sizes(Box),
+    "sphere": _sizes(Sphere),
+    "cylinder": _sizes(Cylinder),
+    "capsule": _sizes(Capsule),
+    "cone": _sizes(Cone),
+    "halfspace": _sizes(HalfSpace),
+    "plane": _sizes(Plane),
+    "mesh": Kind(lambda file, scale=1.0: Mesh.read(file, scale), ("file",), ("file", "scale")),
 }
-KEYS = {"name", "shape", "position", "rpy", "touching"}
+KEYS = ("name", "shape", "position", "rpy", "touching")
 
 
 def scene_names() -> list[str]:
@@ -36,21 +62,23 @@ def scene_names() -> list[str]:
 
 
 def load_scene(source: str | Path) -> tuple[Obstacle, ...]:
-    """The obstacles of a scene, by its name or from a TOML file.
+    """The obstacles of a scene, by its name or from a TOML or JSON file.
 
     Each ``[[obstacle]]`` has a ``name``, a ``shape`` with its sizes in m, a ``position`` in m, perhaps ``rpy`` in rad
     (Rz(yaw) Ry(pitch) Rx(roll)) and ``touching``, names that may touch it. A mesh has a ``file``, relative to the
     scene's, and perhaps a ``scale``.
 
     Raises:
-        UnknownName: If no scene has that name.
+        UnknownName: If no scene has that name, or a key is none that is read.
         InvalidGeometry: If the file is missing or malformed, or an obstacle makes no sense; the message names it.
     """
-    path = Path(source).expanduser()
-    if isinstance(source, Path) or path.suffix.lower() == ".toml" or len(path.parts) > 1:
+    if not isinstance(source, str | Path):
+        raise InvalidGeometry(f"a scene is a name or the path of a TOML or JSON file, got {source!r}")
+    path = Path(source)
+    if isinstance(source, Path) or path.suffix.lower() in READERS or len(path.parts) > 1:
         return _obstacles(_read(path), str(path), path.parent)
     if source not in _shipped():
-        raise UnknownName("scene", str(source), _shipped())
+        raise UnknownName("scene", source, _shipped())
     return _obstacles(_read(_shipped()[source]), source, Path())
 
 
@@ -59,42 +87,77 @@ def _shipped() -> dict[str, Traversable]:
     return {entry.name.removesuffix(".toml"): entry for entry in folder.iterdir() if entry.name.endswith(".toml")}
 
 
-def _read(path: Path | Traversable) -> Mapping[str, Any]:
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """A JSON object whose keys are all different, as TOML wants them."""
+    names = [name for name, _ in pairs]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise ValueError(f"the key {twice!r} is there twice")
+    return dict(pairs)
+
+
+READERS: dict[str, Callable[[str], Any]] = {
+    ".toml": tomllib.loads,
+    ".json": lambda text: json.loads(text, object_pairs_hook=_once),
+}
+
+
+def _read(path: Path | Traversable) -> Any:
+    suffix = Path(path.name).suffix.lower()
+    if suffix not in READERS:
+        raise InvalidGeometry(f"cannot read the scene {path}: a scene is a .toml or a .json file")
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InvalidGeometry(f"cannot read the scene {path}: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InvalidGeometry(f"{path} is not TOML: {error}") from None
+        file = path.expanduser() if isinstance(path, Path) else path
+        text = file.read_text(encoding="utf-8-sig")
+    except (OSError, RuntimeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InvalidGeometry(f"cannot read the scene {path}: {reason}") from None
+    except ValueError as error:
+        raise InvalidGeometry(f"{path} is not text: {error}") from None
+    try:
+        return READERS[suffix](text)
+    except (ValueError, RecursionError) as error:
+        raise InvalidGeometry(f"{path} is not {suffix[1:].upper()}: {error}") from None
 
 
-def _obstacles(scene: Mapping[str, Any], name: str, folder: Path) -> tuple[Obstacle, ...]:
-    entries = scene.get("obstacle")
-    if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
-        raise InvalidGeometry(f"{name} is not a scene: it has no [[obstacle]] tables")
+def _obstacles(scene: Any, name: str, folder: Path) -> tuple[Obstacle, ...]:
+    entries = scene.get("obstacle") if isinstance(scene, Mapping) else None
+    if not isinstance(entries, list) or not all(isinstance(entry, Mapping) for entry in entries):
+        raise InvalidGeometry(f"{name} is not a scene: it has no [[obstacle]] tables (in JSON a list 'obstacle')")
+    _check_keys(scene, ("obstacle",), name)
     return tuple(_obstacle(entry, f"{name}, obstacle {i + 1}", folder) for i, entry in enumerate(entries))
 
 
-def _obstacle(entry: dict[str, Any], where: str, folder: Path) -> Obstacle:
+def _obstacle(entry: Mapping[str, Any], where: str, folder: Path) -> Obstacle:
     for key in ("name", "shape"):
         if not isinstance(entry.get(key), str):
-            raise InvalidGeometry(f"{where}: has no {key}")
-    kind, sizes = entry["shape"], {key: value for key, value in entry.items() if key not in KEYS}
-    pose = pin.SE3(rpy_matrix(*_vector(entry, "rpy", where)), _vector(entry, "position", where))
+            raise InvalidGeometry(f"{where}: its {key} is a text, got {entry.get(key)!r}")
+    where = f"{where}, {entry['name']!r}"
+    if entry["shape"] not in KINDS:
+        raise UnknownName(f"shape of {where},", entry["shape"], KINDS)
+    kind = KINDS[entry["shape"]]
+    _check_keys(entry, (*KEYS, *kind.known), f"{where}, a {entry['shape']},")
+    lacking = [key for key in kind.needed if key not in entry]
+    if lacking:
+        raise InvalidGeometry(f"{where}: a {entry['shape']} needs {' and '.join(lacking)}")
+    values = {key: entry[key] for key in kind.known if key in entry}
+    if isinstance(values.get("file"), str):
+        values["file"] = folder / values["file"]
+    pose = pin.SE3(rpy_matrix(*_three(entry, "rpy", where)), _three(entry, "position", where))
     try:
-        if kind == "mesh":
-            shape: Shape = Mesh.read(folder / sizes.pop("file"), **sizes)
-        elif kind in SHAPES:
-            shape = SHAPES[kind](**sizes)
-        else:
-            raise UnknownName("shape", kind, {*SHAPES, "mesh"})
-    except (TypeError, KeyError) as error:
-        raise InvalidGeometry(f"{where}: the sizes of a {kind} are not {sorted(sizes)} ({error})") from None
-    return Obstacle(entry["name"], shape, pose, tuple(entry.get("touching", ())))
+        return Obstacle(entry["name"], kind.make(**values), pose, entry.get("touching", ()))
+    except InvalidGeometry as error:
+        raise InvalidGeometry(f"{where}: {error}") from None
 
 
-def _vector(entry: dict[str, Any], key: str, where: str) -> Any:
-    value = np.array(entry.get(key, (0.0, 0.0, 0.0)), dtype=object)
-    if value.shape != (3,) or not all(isinstance(number, (int, float)) for number in value):
+def _check_keys(entry: Mapping[str, Any], known: Iterable[str], where: str) -> None:
+    for key in entry:
+        if key not in known:
+            raise UnknownName(f"key of {where}", key, known)
+
+
+def _three(entry: Mapping[str, Any], key: str, where: str) -> NDArray[np.float64]:
+    numbers = three(entry.get(key, [0.0, 0.0, 0.0]))
+    if numbers is None:
         raise InvalidGeometry(f"{where}: {key} is three numbers, got {entry[key]!r}")
-    return value.astype(float)
+    return np.array(numbers)

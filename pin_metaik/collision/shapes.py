@@ -8,9 +8,10 @@ from typing import Any, TypeAlias
 
 import coal
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from pin_metaik.collision.mesh import Mesh
+from pin_metaik.collision.numbers import real, three
 from pin_metaik.errors import InvalidGeometry
 
 
@@ -26,9 +27,10 @@ class Box:
 
     def __post_init__(self) -> None:
         """Raises InvalidGeometry unless the size is three finite lengths above 0."""
-        if np.shape(self.size) != (3,):
+        edges = three(self.size)
+        if edges is None:
             raise InvalidGeometry(f"the size of a box is three lengths in m, got {self.size!r}")
-        object.__setattr__(self, "size", tuple(length("box", "size", edge) for edge in self.size))
+        object.__setattr__(self, "size", tuple(length("box", "size", edge) for edge in edges))
 
     def geometry(self) -> Any:
         """The shape as coal has it."""
@@ -47,7 +49,7 @@ class Sphere:
 
     def __post_init__(self) -> None:
         """Raises InvalidGeometry unless the radius is finite and above 0."""
-        length("sphere", "radius", self.radius)
+        object.__setattr__(self, "radius", length("sphere", "radius", self.radius))
 
     def geometry(self) -> Any:
         """The shape as coal has it."""
@@ -64,8 +66,8 @@ class _Round:
     def __post_init__(self) -> None:
         """Raises InvalidGeometry unless radius and length are finite and above 0."""
         kind = type(self).__name__.lower()
-        length(kind, "radius", self.radius)
-        length(kind, "length", self.length)
+        object.__setattr__(self, "radius", length(kind, "radius", self.radius))
+        object.__setattr__(self, "length", length(kind, "length", self.length))
 
 
 @dataclass(frozen=True)
@@ -120,16 +122,18 @@ class _Flat:
     def __post_init__(self) -> None:
         """Raises InvalidGeometry unless the normal is a finite direction and the offset finite."""
         kind = type(self).__name__.lower()
-        size = float(np.linalg.norm(np.asarray(self.normal, dtype=float))) if np.shape(self.normal) == (3,) else 0.0
-        if not (math.isfinite(size) and size > 0.0 and math.isfinite(self.offset)):
-            raise InvalidGeometry(
-                f"a {kind} has a direction (3,) and a finite offset, got {self.normal!r}, {self.offset!r}"
-            )
+        normal, offset = three(self.normal), real(self.offset)
+        size = math.inf if normal is None else math.hypot(*normal)
+        if not 0.0 < size < math.inf:
+            raise InvalidGeometry(f"the normal of a {kind} is a direction (3,), got {self.normal!r}")
+        if not math.isfinite(offset / size):
+            raise InvalidGeometry(f"the offset of a {kind} is a finite number, got {self.offset!r}")
+        object.__setattr__(self, "normal", normal)
+        object.__setattr__(self, "offset", offset)
 
     def _plane(self) -> tuple[NDArray[np.float64], float]:
-        normal = np.asarray(self.normal, dtype=float)
-        size = float(np.linalg.norm(normal))
-        return normal / size, self.offset / size
+        size = math.hypot(*self.normal)
+        return np.array(self.normal) / size, self.offset / size
 
 
 @dataclass(frozen=True)
@@ -163,16 +167,22 @@ class Plane(_Flat):
 Shape: TypeAlias = Box | Sphere | Cylinder | Capsule | Cone | HalfSpace | Plane | Mesh
 
 
-def length(kind: str, name: str, value: ArrayLike) -> float:
-    """A length in m that is finite and above zero.
+LARGEST = 1e6
+"""m; coal's distances of larger bodies are rounded to more than a tenth of a millimetre."""
+
+
+def length(kind: str, name: str, value: object) -> float:
+    """A length in m that is above zero and at most ``LARGEST``.
 
     Raises:
         InvalidGeometry: It is not.
     """
-    try:
-        number = float(value)  # type: ignore[arg-type]  # whatever was given: what float refuses is told
-    except (TypeError, ValueError):
-        number = math.nan
+    number = real(value)
     if not 0.0 < number < math.inf:
         raise InvalidGeometry(f"the {name} of a {kind} is a length above 0 in m, got {value!r}")
+    if number > LARGEST:
+        raise InvalidGeometry(
+            f"the {name} of a {kind} is at most {LARGEST:g} m, got {value!r}; a floor or a wall "
+            "without end is a HalfSpace"
+        )
     return number

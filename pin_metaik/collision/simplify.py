@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal, TypeAlias
 
 import coal
@@ -16,13 +17,17 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from pin_metaik.collision.cache import Arrays, kept
-from pin_metaik.collision.mesh import convex_hull, flat
+from pin_metaik.collision.extent import box_of
+from pin_metaik.collision.interior import Interior
+from pin_metaik.collision.mesh import convex, convex_hull, flat, triangles_of
 
 Simplify: TypeAlias = Literal["none", "convex", "capsule"]
 
 ROUNDING = 1e-9  # m that a capsule is larger than it need be
 THICK = 1e-5  # m that a sheet is thickened by, each way
 STEPS = 400  # of the fit, from each of the three principal axes
+SETTLED = 1e-3  # rad, and share of the size, below which the fit no longer moves
+DIRECTIONS = 200  # in which the points that decide the fit are outermost
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,53 +46,59 @@ class Solid:
     coarse: Any
     offset: pin.SE3
 
+    @cached_property
+    def box(self) -> NDArray[np.float64]:
+        """(7,) centre, half of the edges and radius of the ball of the box around it, in its frame, m."""
+        return box_of(self.hull)
+
+    @cached_property
+    def interior(self) -> Interior:
+        """What the original, if it is a mesh, has inside."""
+        return Interior.of(self.original)
+
 
 def solid_of(geometry: Any, simplify: Simplify, *, robot: bool = True) -> Solid:
-    """The three levels of a geometry of coal; an obstacle (not ``robot``) that is a concave mesh stays a mesh."""
-    here = pin.SE3.Identity()
-    if not isinstance(geometry, coal.BVHModelBase):
-        convex = isinstance(geometry, coal.Convex) and simplify == "capsule" and robot
-        capsule = _capsule(np.array(geometry.points())) if convex else None
-        return Solid(geometry, geometry, *(capsule or (geometry, here)))
-    vertices = np.array(geometry.vertices())
-    shapes = kept("solid", vertices.tobytes(), lambda: _enclose(vertices))
-    hull = _convex(shapes["points"], shapes["faces"])
+    """The three levels of a geometry of coal; an obstacle (not ``robot``) that is a concave mesh stays a mesh.
+
+    Only what is asked for is fitted: every mesh has a hull, capsules are looked for where they are checked.
+    """
+    mesh = isinstance(geometry, coal.BVHModelBase)
+    hull = _hull(np.array(geometry.vertices())) if mesh else geometry
     match simplify:
+        case "capsule" if robot and isinstance(hull, coal.Convex):
+            return Solid(geometry, hull, *_capsule(np.array(hull.points())))
         case "convex" if robot:
-            return Solid(geometry, hull, hull, here)
-        case "capsule" if robot:
-            return Solid(geometry, hull, *_placed(shapes["axis"], float(shapes["radius"])))
+            return Solid(geometry, hull, hull, pin.SE3.Identity())
         case _:
-            return Solid(geometry, hull, geometry, here)
+            return Solid(geometry, hull, geometry, pin.SE3.Identity())
 
 
-def _enclose(vertices: NDArray[np.float64]) -> Arrays:
-    """Hull and capsule of the vertices (k, 3) as arrays; a sheet is given some thickness."""
+def _hull(vertices: NDArray[np.float64]) -> Any:
+    """The convex hull of the vertices (k, 3) of a mesh, as a ``coal.Convex``, kept on disk."""
+    hull = kept("hull", vertices.tobytes(), lambda: _faces(vertices))
+    return convex(hull["points"], hull["faces"])
+
+
+def _faces(vertices: NDArray[np.float64]) -> Arrays:
+    """Corners and triangles of the convex hull of vertices (k, 3); a sheet is given some thickness."""
     if flat(vertices):
         vertices = (vertices[:, None] + THICK * np.vstack([np.eye(3), -np.eye(3)])).reshape(-1, 3)
     hull = convex_hull(vertices)
-    points = np.array(hull.points())
-    faces = np.array([[hull.polygons(i)[c] for c in range(3)] for i in range(hull.num_polygons)], dtype=float)
-    axis, radius = fit_capsule(points)
-    return {"points": points, "faces": faces, "axis": axis, "radius": np.array(radius)}
-
-
-def _convex(points: NDArray[np.float64], faces: NDArray[np.float64]) -> Any:
-    corners, triangles = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
-    corners.extend(list(points))
-    triangles.extend([coal.Triangle(*map(int, face)) for face in faces])
-    return coal.Convex(corners, triangles)
+    return {"points": np.array(hull.points()), "faces": triangles_of(hull).astype(float)}
 
 
 def _capsule(points: NDArray[np.float64]) -> tuple[Any, pin.SE3]:
-    return _placed(*fit_capsule(points))
+    """A capsule of coal around points (k, 3), and where it stands; its fit is kept on disk."""
 
+    def fitted() -> Arrays:
+        ends, radius = fit_capsule(points)
+        return {"ends": ends, "radius": np.array(radius)}
 
-def _placed(axis: NDArray[np.float64], radius: float) -> tuple[Any, pin.SE3]:
-    """A capsule of coal, and where it stands; ``axis`` (2, 3) are the ends of its segment."""
+    capsule = kept("capsule", points.tobytes(), fitted)
+    axis, radius = capsule["ends"], float(capsule["radius"])
     along = axis[1] - axis[0]
     length = float(np.linalg.norm(along))
-    up = np.array([0.0, 0.0, 1.0])
+    up = np.array([0.0, 0.0, math.copysign(1.0, along[2])])  # a capsule has no up and down: never turn by a half circle
     turn = pin.Quaternion.FromTwoVectors(up, along / length if length > 0.0 else up).matrix()
     return coal.Capsule(radius, length), pin.SE3(turn, axis.mean(axis=0))
 
@@ -95,33 +106,46 @@ def _placed(axis: NDArray[np.float64], radius: float) -> tuple[Any, pin.SE3]:
 def fit_capsule(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
     """The ends (2, 3) of the axis and the radius of a small capsule that encloses points (k, 3).
 
-    The axis turns and shifts to the least volume (Nelder and Mead 1965), from each of the principal axes.
+    The axis turns and shifts to the least volume (Nelder and Mead 1965), from each of the principal axes. Of many
+    points those decide that are outermost in some direction; all of them are enclosed.
     """
     from scipy.optimize import minimize  # takes a fifth of a second to import, and the cache makes it rare
 
     centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
     axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
     size = float(np.ptp(points, axis=0).max())
-    best: tuple[float, NDArray[np.float64]] = (math.inf, np.zeros((2, 3)))
-    for k in range(3):
+    outermost = _outermost(points)
+
+    def segment(p: NDArray[np.float64], k: int, around: NDArray[np.float64]) -> NDArray[np.float64]:
         u, v, w = axes[k], axes[k - 1], axes[k - 2]
+        direction = u + p[0] * v + p[1] * w
+        return _shortest(around, centre + size * (p[2] * v + p[3] * w), direction / np.linalg.norm(direction))
 
-        def segment(p: NDArray[np.float64], u: Any = u, v: Any = v, w: Any = w) -> NDArray[np.float64]:
-            direction = u + p[0] * v + p[1] * w
-            return _shortest(points, centre + size * (p[2] * v + p[3] * w), direction / np.linalg.norm(direction))
+    def volume(p: NDArray[np.float64], k: int, around: NDArray[np.float64]) -> float:
+        ends = segment(p, k, around)
+        r = _radius(around, ends)
+        return math.pi * r * r * (float(np.linalg.norm(ends[1] - ends[0])) + 4.0 / 3.0 * r)
 
-        def volume(p: NDArray[np.float64], segment: Any = segment) -> float:
-            ends = segment(p)
-            r = _radius(points, ends)
-            return math.pi * r * r * (float(np.linalg.norm(ends[1] - ends[0])) + 4.0 / 3.0 * r)
+    options = {"initial_simplex": np.vstack([np.zeros(4), 0.1 * np.eye(4)]), "maxfev": STEPS, "xatol": SETTLED}
+    found = [
+        minimize(volume, np.zeros(4), args=(k, outermost), method="Nelder-Mead", options=options).x for k in range(3)
+    ]
+    best = min(range(3), key=lambda k: volume(found[k], k, points))
+    ends = segment(found[best], best, points)
+    return ends, _radius(points, ends) + ROUNDING
 
-        simplex = np.vstack([np.zeros(4), 0.1 * np.eye(4)])
-        found = minimize(
-            volume, np.zeros(4), method="Nelder-Mead", options={"initial_simplex": simplex, "maxfev": STEPS}
-        )
-        if found.fun < best[0]:
-            best = float(found.fun), segment(found.x)
-    return best[1], _radius(points, best[1]) + ROUNDING
+
+def _outermost(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of points (k, 3) those that are the farthest in one of ``DIRECTIONS`` directions; all, if they are few."""
+    if len(points) <= DIRECTIONS:
+        return points
+    turn = np.arange(DIRECTIONS) * math.pi * (3.0 - math.sqrt(5.0))  # evenly over the sphere, along a spiral
+    z = np.linspace(1.0, -1.0, DIRECTIONS)
+    directions = np.stack([np.sqrt(1.0 - z * z) * np.cos(turn), np.sqrt(1.0 - z * z) * np.sin(turn), z], axis=1)
+    shape = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
+    round_points = (points - points.mean(axis=0)) @ shape[2].T / shape[1]  # evenly for long and flat bodies, too
+    outermost: NDArray[np.float64] = points[np.unique((round_points @ directions.T).argmax(axis=0))]
+    return outermost
 
 
 def _shortest(points: NDArray[np.float64], at: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,24 +1,28 @@
-"""Which links of a robot ever touch: found by sampling, then by going downhill in distance where sampling saw a gap."""
+"""Which links of a robot ever touch: found by sampling, then by going downhill in distance where samples keep apart."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from pin_metaik.collision.approach import Approach
 from pin_metaik.collision.body import Body, digest
-from pin_metaik.collision.cache import Arrays, kept
-from pin_metaik.collision.layer import Layer
+from pin_metaik.collision.cache import Arrays, kept, where_kept
+from pin_metaik.collision.solids import Level, Placed, Solids
 from pin_metaik.collision.srdf import Pair, pair_of
+from pin_metaik.notice import notice
 
 SEED = 20_261_125
 SAMPLES = 500
 ALWAYS = 0.95  # of the samples: links that touch so often are made so
 CONTACT = 1e-6  # m; what is nearer touches, up to rounding
 ENOUGH = 100  # samples of the meshes, for links whose hulls always touch
-STARTS, STEPS, FIRST_STEP = 4, 50, 0.5  # of the descents in distance, the step in rad or m
+STARTS = 4  # of the descents in distance, where samples came nearest
+MORE_STARTS, CLOSE = 12, 0.2  # at random, for what then comes closer than this, m
 
 
 @dataclass(frozen=True)
@@ -28,7 +32,7 @@ class Touch:
     Attributes:
         share: Of random configurations in which their hulls touch.
         meshes: The same of the original geometry; only looked at where the hulls nearly always touch, else 0.
-        gap: Least distance of their hulls found, m; 0 when they touch.
+        gap: Least distance of their hulls inside the limits found, m; 0 when they touch.
     """
 
     share: float
@@ -76,61 +80,54 @@ def _sample(
 ) -> Arrays:
     rng = np.random.default_rng(SEED)
     Q = random_configurations(model, rng, SAMPLES)
-    hulls = Layer.of(model, [(body, body.solid.hull, body.placement) for body in bodies], pieces)
-    distances = np.array([hulls.distances(q) for q in Q])  # (SAMPLES, pieces)
-    by_link = np.full((SAMPLES, count), np.inf)
-    np.minimum.at(by_link.T, owner, distances.T)
-    share, gap = (by_link <= CONTACT).mean(axis=0), np.maximum(by_link.min(axis=0), 0.0)
+    solids = Solids(model, bodies)
+    levels = [(solids.levels[i], solids.levels[j]) for i, j in pieces]
+    hulls, originals = [(a.hull, b.hull) for a, b in levels], [(a.fine, b.fine) for a, b in levels]
+    approaches = [Approach(model, model.createData(), bodies[i], bodies[j]) for i, j in pieces]
+    distances, by_link = np.empty((SAMPLES, len(pieces))), np.full((SAMPLES, count), np.inf)
+    work = f"looking for links of {model.name} that can touch, once; {where_kept()}"
+    with notice(work, SAMPLES + len(pieces)) as line:
+        for k, q in enumerate(Q):
+            distances[k] = _distances(solids.place(q), hulls)
+            line.step()
+        np.minimum.at(by_link.T, owner, distances.T)
+        share, gap = (by_link <= CONTACT).mean(axis=0), np.maximum(by_link.min(axis=0), 0.0)
+        for k, approach in enumerate(approaches):
+            if gap[owner[k]] > 0.0:  # no other piece of the two links touches
+                nearest = _nearest(approach, Q[np.argsort(distances[:, k])[:STARTS]], rng)
+                gap[owner[k]] = min(gap[owner[k]], nearest)
+            line.step()
     meshes = np.zeros(count)
-    margins = np.full(len(pieces), CONTACT)
-    originals = Layer.of(model, [(body, body.solid.original, body.placement) for body in bodies], pieces, margins)
     for link in np.flatnonzero(share >= ALWAYS):
-        meshes[link] = _share(originals, np.flatnonzero(owner == link), Q[:ENOUGH])
-    for piece in np.flatnonzero(gap[owner] > 0.0):
-        starts = Q[np.argsort(distances[:, piece])[:STARTS]]
-        gap[owner[piece]] = min(gap[owner[piece]], _nearest(hulls, pieces, bodies, int(piece), starts, rng))
+        meshes[link] = _share(solids, [originals[k] for k in np.flatnonzero(owner == link)], Q[:ENOUGH])
     return {"share": share, "meshes": meshes, "gap": gap}
 
 
-def _share(layer: Layer, pieces: NDArray[np.int64], Q: NDArray[np.float64]) -> float:
+def _distances(placed: Placed, pairs: Sequence[tuple[Level, Level]]) -> list[float]:
+    return [placed.distance(a, b) for a, b in pairs]
+
+
+def _share(solids: Solids, pieces: Sequence[tuple[Level, Level]], Q: NDArray[np.float64]) -> float:
     """Of the configurations Q (k, nq) in which any of the pieces touch; 0 as soon as it is certainly not ``ALWAYS``."""
     free = 0
     for q in Q:
-        layer.place(q)
-        free += not any(layer.touches(int(piece)) for piece in pieces)
+        placed = solids.place(q)
+        free += not any(placed.overlap(a, b, CONTACT) for a, b in pieces)
         if free > (1.0 - ALWAYS) * len(Q):
             return 0.0
     return 1.0 - free / len(Q)
 
 
-def _nearest(
-    layer: Layer,
-    pieces: list[tuple[int, int]],
-    bodies: tuple[Body, ...],
-    piece: int,
-    starts: NDArray[np.float64],
-    rng: np.random.Generator,
-) -> float:
-    """The least distance that random steps downhill lead to, of those joints that move the two against each other."""
-    model = layer.model
-    i, j = pieces[piece]
-    moving = set(model.supports[bodies[i].joint]) ^ set(model.supports[bodies[j].joint])
-    freedoms = [model.joints[joint].idx_v for joint in sorted(moving) if model.joints[joint].nv == 1]
+def _nearest(approach: Approach, starts: NDArray[np.float64], rng: np.random.Generator) -> float:
+    """The least distance (m) that descents lead to, from starts (k, nq) and, if that is little, from random ones.
+
+    Where a joint of several freedoms moves the two against each other, of which samples say nothing, it is 0.
+    """
+    if approach.several:
+        return 0.0
     least = np.inf
-    for q in starts:
-        layer.place(q)
-        here, length = layer.distance(piece), FIRST_STEP
-        for _ in range(STEPS):
-            step = np.zeros(model.nv)
-            step[freedoms] = length * rng.standard_normal(len(freedoms))
-            tried = np.clip(pin.integrate(model, q, step), model.lowerPositionLimit, model.upperPositionLimit)
-            layer.place(tried)
-            there = layer.distance(piece)
-            if there < here:
-                q, here, length = tried, there, 1.5 * length
-            else:
-                length *= 0.8
-            if here <= 0.0:
-                return 0.0
-        least = min(least, here)
+    for number, q in enumerate((*starts, *random_configurations(approach.model, rng, MORE_STARTS))):
+        if least <= 0.0 or (least > CLOSE and number >= len(starts)):
+            break
+        least = min(least, max(approach.descend(q)[0], 0.0))
     return float(least)

@@ -12,21 +12,31 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.collision.body import Body, Geometry, robot_bodies
+from pin_metaik.arguments import array, checked
+from pin_metaik.collision.body import Body, Geometry, geometry_of, robot_bodies
 from pin_metaik.collision.checker import Checker
 from pin_metaik.collision.contact import Contact, Distance
-from pin_metaik.collision.layout import lay_out, moved
+from pin_metaik.collision.layout import Samples, lay_out, sample
 from pin_metaik.collision.obstacle import Obstacle, placement
 from pin_metaik.collision.pairs import Srdf, disabled_pairs
 from pin_metaik.collision.shapes import Shape
 from pin_metaik.collision.simplify import Simplify, solid_of
+from pin_metaik.collision.solids import Solids
 from pin_metaik.collision.srdf import Pair, pair_of, write_srdf
-from pin_metaik.errors import FrameNotFound, InvalidGeometry, InvalidSetting, UnknownName
+from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidGeometry, InvalidSetting, UnknownName
 from pin_metaik.kinematics.model import as_configuration
+from pin_metaik.output import writable
 
 
+@checked
 class CollisionWorld:
     """Collisions of a robot with itself, with obstacles, and of what it has grasped with both.
+
+    Bodies collide when they are no farther apart than the margin, to a micrometre, or one is inside the other. The
+    geometry as it was given decides. A mesh is solid where it is closed: every edge of a part of it, triangles that
+    share corners, belongs to an even number of triangles. A part that is not closed is a sheet, and collides where its
+    surface does; a closed part within another one is a hollow. A robot that stands on something touches it, and does
+    not collide.
 
     Changing it (add, move, remove, attach, detach, allow, check) is not for several threads at once; asking it is.
 
@@ -55,10 +65,12 @@ class CollisionWorld:
 
         Args:
             robot: A robot with collision geometry: a ``Robot``, or any object with ``name``, ``model``,
-                ``collision_model`` and ``srdf`` (None or a path).
+                ``collision_model`` and ``srdf`` (None or a path); or Pinocchio's ``RobotWrapper``.
             obstacles: What stands in the world; more can be added later.
-            margin: Distance at or below which two bodies collide, m. Links that are mostly nearer to each other are
-                built so, and only kept from touching.
+            margin: Distance at or below which two bodies collide, m. It is not kept between: links that mostly are
+                nearer to each other, as they are built so (they must only not touch); pairs that ``disabled`` names,
+                which are not checked at all; and the robot's base and what stands, as neither can come nearer (they
+                must only not overlap).
             srdf: A file with the pairs of links not to check; default: the robot's own, if it has one; ``False``: none.
                 Neighbours, links that always touch and links that never do are found out either way.
             simplify: ``"convex"`` hulls or ``"capsule"``s are checked before the original geometry, or ``"none"``.
@@ -71,6 +83,7 @@ class CollisionWorld:
             InvalidSetting: If the margin is negative or not finite.
             UnknownName: If the SRDF or an obstacle names something that does not exist, or ``simplify`` is no level.
         """
+        robot = geometry_of(robot)
         if not 0.0 <= margin < math.inf:
             raise InvalidSetting(f"margin is a finite distance of at least 0 m, got {margin!r}")
         if simplify not in get_args(Simplify):
@@ -82,6 +95,7 @@ class CollisionWorld:
         self.obstacles: tuple[Obstacle, ...] = ()
         self.grasped: tuple[tuple[Obstacle, str], ...] = ()
         self._others: dict[str, Body] = {}
+        self._samples: Samples = {}
         self._checker: Checker | None = None
         for obstacle in obstacles:
             self._enter(obstacle, 0, obstacle.pose)
@@ -105,6 +119,7 @@ class CollisionWorld:
         every = (pair_of(a, b) for i, a in enumerate(names) for b in names[:i])
         return {pair: self.disabled.get(pair, "") for pair in every}
 
+    @checked
     def add(self, obstacle: Obstacle) -> None:
         """Put up an obstacle.
 
@@ -116,6 +131,7 @@ class CollisionWorld:
         self.obstacles = (*self.obstacles, obstacle)
         self._permit(obstacle.name, obstacle.touching)
 
+    @checked
     def move(self, name: str, pose: pin.SE3 | ArrayLike) -> None:
         """Put an obstacle somewhere else.
 
@@ -129,10 +145,9 @@ class CollisionWorld:
         there = placement(name, pose)
         self._others[name] = replace(self._others[name], placement=there)
         self.obstacles = tuple(replace(o, pose=there) if o.name == name else o for o in self.obstacles)
-        if self._checker is not None:
-            number = [body.link for body in self._checker.bodies].index(name)
-            self._checker = moved(self._checker, number, there, self._allowed)
+        self._checker = None
 
+    @checked
     def remove(self, name: str) -> None:
         """Take away an obstacle or a grasped object.
 
@@ -147,6 +162,7 @@ class CollisionWorld:
         self.disabled = {pair: reason for pair, reason in self.disabled.items() if name not in pair}
         self._checker = None
 
+    @checked
     def attach(
         self,
         name: str,
@@ -179,6 +195,7 @@ class CollisionWorld:
         self.grasped = (*self.grasped, (held, frame))
         self._permit(name, held.touching)
 
+    @checked
     def detach(self, name: str, q: ArrayLike) -> None:
         """Let go of a grasped object: it stays, as an obstacle, where it is at configuration q (nq,).
 
@@ -194,6 +211,7 @@ class CollisionWorld:
         self.remove(name)
         self.add(replace(held[name], pose=data.oMi[body.joint] * body.placement))
 
+    @checked
     def allow(self, first: str, second: str, reason: str = "User") -> None:
         """Do not check a pair any longer.
 
@@ -203,6 +221,7 @@ class CollisionWorld:
         self.disabled[self._pair(first, second)] = reason
         self._checker = None
 
+    @checked
     def check(self, first: str, second: str) -> None:
         """Check a pair that was not checked.
 
@@ -212,18 +231,24 @@ class CollisionWorld:
         self.disabled.pop(self._pair(first, second), None)
         self._checker = None
 
+    @checked
     def write_srdf(self, path: str | Path) -> None:
         """Write the pairs of links that are not checked as SRDF: to be read, changed and given back as ``srdf``."""
         links = {body.link for body in self._links}
         mine = {pair: reason for pair, reason in self.disabled.items() if links.issuperset(pair)}
-        write_srdf(Path(path), self.model.name, mine)
+        write_srdf(writable(path), self.model.name, mine)
 
     @property
     def checker(self) -> Checker:
         """The checks as they are laid out now."""
         if self._checker is None:
-            bodies = (*self._links, *self._others.values())
-            self._checker = lay_out(self.model, bodies, self._allowed, self.margin, self.exact)
+            held = {obstacle.name for obstacle, _ in self.grasped}
+            others = self._others.items()
+            moving = (*self._links, *(body for name, body in others if name in held))
+            standing = tuple(body for name, body in others if name not in held)
+            solids = Solids(self.model, moving, standing)
+            self._samples = sample(solids, self.disabled, self.margin, self._samples)
+            self._checker = lay_out(solids, self._samples, self.disabled, self.margin, self.exact)
         return self._checker
 
     def in_collision(self, q: ArrayLike) -> bool:
@@ -256,7 +281,7 @@ class CollisionWorld:
         Raises:
             InvalidConfiguration: If a row is not a configuration of the model.
         """
-        return np.array([self.in_collision(q) for q in np.asarray(Q, dtype=float)], dtype=bool)
+        return np.array([self.checker.collides(q) for q in self._given(Q)], dtype=bool)
 
     def min_distance_batch(self, Q: ArrayLike) -> NDArray[np.float64]:
         """Distance (k,) of the nearest two bodies at configurations Q (k, nq), m.
@@ -264,10 +289,11 @@ class CollisionWorld:
         Raises:
             InvalidConfiguration: If a row is not a configuration of the model.
         """
-        return np.array([self.min_distance(q).distance for q in np.asarray(Q, dtype=float)])
+        return np.array([self.checker.nearest(q).distance for q in self._given(Q)], dtype=float)
 
-    def _allowed(self, a: Body, b: Body) -> bool:
-        return pair_of(a.link, b.link) in self.disabled
+    def _given(self, Q: ArrayLike) -> NDArray[np.float64]:
+        """Configurations (k, nq) somebody gave."""
+        return array("Q", Q, "k", self.model.nq, error=InvalidConfiguration)
 
     def _enter(self, obstacle: Obstacle, joint: int, at: pin.SE3) -> None:
         if obstacle.name in self.names:

@@ -9,16 +9,22 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.compare.method import Answer
+from pin_metaik.errors import MetaIKError, UnsupportedJoint
 from pin_metaik.ik import IKProblem, IKStatus, Verdict
 from pin_metaik.kinematics import Chain
 from pin_metaik.robots import Robot
 
 Array = NDArray[np.float64]
 
-DRAWS = 10_000  # of a task, before a world is found to leave no room
+DRAWS = 1_000  # of a task, before a world is found to leave no room
 REACHED = "Within 1e-5 m and 1e-5 rad of the target and inside the limits, by Pinocchio, whatever the method says."
+
+
+class NoTask(MetaIKError):
+    """A case that an arm has no task of, such as singular poses of one that never loses a direction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +46,10 @@ class Task:
     world: CollisionWorld | None = None
 
     @staticmethod
+    @checked
     def at(chain: Chain, X: Array, start: Array | None = None) -> Task:
         """To reach the poses of the coordinates X (K, n)."""
+        X = array("X", X, "K", chain.n)
         return Task(chain, tuple(chain.placements(q)[0] for q in chain.q(X)), X, start)
 
     @property
@@ -98,6 +106,7 @@ def reached(task: Task, attempt: Attempt) -> bool:
     return attempt.reached
 
 
+@checked
 @dataclass(frozen=True)
 class Case:
     """A family of tasks. One object of this class is all that a case of your own takes.
@@ -123,11 +132,12 @@ class Case:
     judge: Callable[[Task, Attempt], bool] = reached
     success: str = REACHED
 
+    @checked
     def task(self, chain: Chain, world: CollisionWorld | None, rng: np.random.Generator) -> Task:
         """The task that a generator leads to.
 
         Raises:
-            RuntimeError: In so many draws nothing is free of collisions.
+            NoTask: The arm has none, or in so many draws nothing is free of collisions.
         """
         if world is None:
             return self.draw(chain, rng)
@@ -135,4 +145,15 @@ class Case:
             task = self.draw(chain, rng)
             if task.planted is None or not any(world.checker.collides(q) for q in chain.q(task.planted)):
                 return replace(task, world=world)
-        raise RuntimeError(f"none of {DRAWS:,} tasks is free of collisions")
+        raise NoTask(f"none of {DRAWS:,} tasks is free of collisions")
+
+    @checked
+    def lacks(self, robot: Robot, rng: np.random.Generator) -> str:
+        """Why a robot has no task of this case, as far as can be told without its world; empty if it has one."""
+        try:
+            self.draw(self.chain(robot, rng), rng)
+        except (NoTask, UnsupportedJoint) as none:
+            return str(none)
+        except Exception:  # a case of anybody's: its rows will say it
+            return ""
+        return ""

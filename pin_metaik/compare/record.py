@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
 from typing import Any
 
 from pin_metaik.compare.case import Case
@@ -42,6 +43,8 @@ class Record:
         seeds: Repetitions of each method on each task.
         budget: Kernel evaluations for each target.
         rng: Seed of everything random.
+        files: Where in the folder of the comparison the robots that do not come by name are kept, by name.
+        absent: Why a robot has no task of a case, by ``robot/case``.
     """
 
     robots: dict[str, str]
@@ -51,10 +54,12 @@ class Record:
     seeds: int
     budget: int
     rng: int
+    files: dict[str, str] = field(default_factory=dict)
+    absent: dict[str, str] = field(default_factory=dict)
 
     @staticmethod
     def of(suite: Suite) -> Record:
-        """What there is to know of a comparison."""
+        """What there is to know of a comparison before it has a folder."""
         cases = zip(_specs(suite.cases), suite.tasks.values(), strict=True)
         return Record(
             suite.arms,
@@ -76,16 +81,18 @@ class Record:
         """As plain values."""
         return asdict(self)
 
-    def suite(self) -> Suite:
-        """The comparison, to be run; raises what ``Suite`` does where names mean nothing any more."""
+    def suite(self, folder: Path) -> Suite:
+        """The comparison in a folder, to be run; raises what ``Suite`` does where names mean nothing any more."""
+        robots = [str(folder / self.files[name]) if name in self.files else spec for name, spec in self.robots.items()]
         specs = [case.spec for case in self.cases.values()]
         numbers = (self.targets, self.seeds, self.budget, self.rng)
-        return Suite(tuple(self.robots.values()), tuple(specs), tuple(self.methods.values()), *numbers)
+        return Suite(tuple(robots), tuple(specs), tuple(self.methods.values()), *numbers)
 
     @property
     def trials(self) -> int:
         """How many rows it has."""
-        return len(self.robots) * len(self.cases) * len(self.methods) * self.targets * self.seeds
+        pairs = len(self.robots) * len(self.cases) - len(self.absent)
+        return pairs * len(self.methods) * self.targets * self.seeds
 
     def holds(self, trial: Trial) -> bool:
         """Whether a row is one of this comparison's."""

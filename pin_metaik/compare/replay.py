@@ -8,11 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.case import Task
 from pin_metaik.compare.store import read_record, read_rows
+from pin_metaik.compare.suite import pair_name
 from pin_metaik.compare.trial import Trial
 from pin_metaik.compare.unit import Unit
 from pin_metaik.errors import InvalidSetting, UnknownName
+
+ROWS = ("rotation", "", "")  # the word stands before the first row of a matrix
 
 
 @dataclass(frozen=True)
@@ -22,12 +26,12 @@ class Replay:
     Attributes:
         trial: What came out.
         row: What its row says; None if it has none yet.
-        task: What was asked.
+        task: What was asked; None if the case could not draw it: the trial has the error.
     """
 
     trial: Trial
     row: Trial | None
-    task: Task
+    task: Task | None
 
     @property
     def same(self) -> bool:
@@ -38,11 +42,7 @@ class Replay:
         """What to show."""
         trial = self.trial
         yield trial.name
-        for i, pose in enumerate(self.task.targets):
-            yield f"target {i + 1}: position {_numbers(pose.translation)} m"
-            yield from (f"          rotation {_numbers(row)}" for row in pose.rotation)
-        if self.task.planted is not None:
-            yield f"made from x = {_numbers(self.task.planted[-1])}"
+        yield from self._asked()
         yield f"{'solved' if trial.solved else 'not solved'}: {trial.status}, claimed: {trial.claimed}"
         if trial.error is not None:
             yield f"raised {trial.error}"
@@ -56,7 +56,22 @@ class Replay:
         else:
             yield "as its row says" if self.same else f"its row differs: {self.row}"
 
+    def _asked(self) -> Iterator[str]:
+        """The poses of the task, and what they were made from."""
+        if self.task is None:
+            return
+        poses = self.task.targets
+        for i, pose in enumerate(poses, start=1):
+            which = f", pose {i}" if len(poses) > 1 else ""
+            yield f"target {self.trial.target}{which}: position {_numbers(pose.translation)} m"
+            first, *others = map(_numbers, pose.rotation)
+            yield f"          rotation {first}"
+            yield from (f"                   {row}" for row in others)
+        if self.task.planted is not None:
+            yield f"made from x = {_numbers(self.task.planted[-1])}"
 
+
+@checked
 def replay(folder: Path, name: str) -> Replay:
     """Run a trial of a comparison again.
 
@@ -65,10 +80,11 @@ def replay(folder: Path, name: str) -> Replay:
         name: ``robot/case/target/method/seed``.
 
     Raises:
-        InvalidSetting: The folder holds no comparison, or the name is none.
+        InvalidSetting: The folder holds no comparison, the name is none, or the comparison has no such trial.
         UnknownName: The comparison has no such robot, case or method.
     """
-    suite = read_record(folder).suite()
+    record = read_record(folder)
+    suite = record.suite(folder)
     try:
         robot, case, target, method, seed = name.split("/")
         numbers = int(target), int(seed)
@@ -76,6 +92,9 @@ def replay(folder: Path, name: str) -> Replay:
         raise InvalidSetting(
             f"a trial is ROBOT/CASE/TARGET/METHOD/SEED, e.g. panda/singular/17/gwo+dls/0, got {name!r}"
         ) from None
+    for kind, number, count in (("target", numbers[0], suite.targets), ("seed", numbers[1], suite.seeds)):
+        if not 0 <= number < count:
+            raise InvalidSetting(f"the {kind}s of this comparison are 0 to {count - 1}, got {number}")
     for kind, word, known in (
         ("robot", robot, suite.arms),
         ("case", case, suite.tasks),
@@ -83,6 +102,8 @@ def replay(folder: Path, name: str) -> Replay:
     ):
         if word not in known:
             raise UnknownName(kind, word, known)
+    if pair_name(robot, case) in record.absent:
+        raise InvalidSetting(f"no trial {name}: {record.absent[pair_name(robot, case)]}")
     unit = Unit(
         robot,
         suite.arms[robot],
@@ -94,7 +115,14 @@ def replay(folder: Path, name: str) -> Replay:
     )
     trial = unit.work()[0]
     row = next((row for row in read_rows(folder) if row.key == trial.key), None)
-    return Replay(trial, row, unit.task())
+    return Replay(trial, row, _task(unit))
+
+
+def _task(unit: Unit) -> Task | None:
+    try:
+        return unit.task()
+    except Exception:  # of a case of anybody's; the trial says which
+        return None
 
 
 def _numbers(values: np.ndarray) -> str:

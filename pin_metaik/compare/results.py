@@ -9,8 +9,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.record import CaseRecord, Record
-from pin_metaik.compare.statistics import wilson
+from pin_metaik.compare.statistics import Pair, compare_all, wilson
 from pin_metaik.compare.trial import Trial
 
 Array = NDArray[np.float64]
@@ -82,6 +83,7 @@ class Results:
         silent = {trial.method for trial in self.trials if trial.evaluations is None and trial.error is None}
         return [method for method in self.methods if method not in silent]
 
+    @checked
     def of(self, *, robot: str | None = None, case: str | None = None, method: str | None = None) -> list[Trial]:
         """The rows of a robot, a case, a method."""
         if method is None:
@@ -91,6 +93,7 @@ class Results:
         cases = list(self.cases) if case is None else [case]
         return [t for r in robots for c in cases for t in self._groups.get((r, c, method), ())]
 
+    @checked
     def spent(self, case: str, method: str) -> Array:
         """Evaluations to solution of each row, ``inf`` of unsolved ones."""
         rows = self.of(case=case, method=method)
@@ -98,12 +101,24 @@ class Results:
             [t.evaluations if t.solved and t.evaluations is not None else np.inf for t in rows], dtype=float
         )
 
+    @checked
     def costs(self, case: str, robot: str | None = None) -> Array:
         """Costs (b, k) of the methods that can be ranked, on every task of a case that all of them tried.
 
         A trial costs its evaluations, at least 1, if it solved the task, otherwise ten times what was allowed; several
         seeds are taken together by the geometric mean.
         """
+        if (case, robot) not in self._costs:
+            self._costs[case, robot] = self._table(case, robot)
+        return self._costs[case, robot]
+
+    def pairs(self, case: str) -> list[Pair]:
+        """Every pair of methods that can be ranked, tested on a case."""
+        if case not in self._pairs:
+            self._pairs[case] = compare_all(self.counted, self.costs(case))
+        return self._pairs[case]
+
+    def _table(self, case: str, robot: str | None) -> Array:
         table: dict[tuple[str, int], dict[str, list[float]]] = {}
         for method in self.counted:
             for trial in self.of(robot=robot, case=case, method=method):
@@ -114,6 +129,14 @@ class Results:
             if len(row) == len(self.counted) and len({len(costs) for costs in row.values()}) == 1
         ]
         return np.array(whole).reshape(-1, len(self.counted))
+
+    @cached_property
+    def _costs(self) -> dict[tuple[str, str | None], Array]:
+        return {}
+
+    @cached_property
+    def _pairs(self) -> dict[str, list[Pair]]:
+        return {}
 
     @cached_property
     def _groups(self) -> dict[tuple[str, str, str], list[Trial]]:
@@ -131,6 +154,7 @@ def cost(trial: Trial) -> float:
     return PENALTY * trial.allowed
 
 
+@checked
 def summarise(trials: Sequence[Trial]) -> Summary:
     """What became of these trials."""
     solved = [trial for trial in trials if trial.solved]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from pathlib import Path
 from time import perf_counter
@@ -13,16 +14,24 @@ from typing import Any, Literal, TypeAlias
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare import environment
+from pin_metaik.compare.baggage import pack
+from pin_metaik.compare.case import NoTask
+from pin_metaik.compare.lock import locked
 from pin_metaik.compare.record import Record
-from pin_metaik.compare.store import Appender, need_parquet, open_record, read_rows, write_parquet
+from pin_metaik.compare.store import Appender, check_record, need_parquet, read_rows, write_parquet, write_record
 from pin_metaik.compare.suite import Suite
 from pin_metaik.compare.trial import Trial
 from pin_metaik.compare.unit import Unit
 from pin_metaik.errors import InvalidSetting, MissingExtra
+from pin_metaik.interrupts import Interrupted
+from pin_metaik.optimize.settings import one_of
+from pin_metaik.output import writable
 
 Backend: TypeAlias = Literal["loky", "dask"]
 
+MOST_JOBS = 10_000
 CONNECTING = 10.0  # s
 
 
@@ -37,6 +46,8 @@ class Outcome:
         fresh: Rows that were run now.
         errors: Rows that are errors.
         seconds: Time taken now, s.
+        absent: Cases that a robot has no task of, and why.
+        error: The error that most rows have; empty without one.
     """
 
     folder: Path
@@ -45,6 +56,8 @@ class Outcome:
     fresh: int
     errors: int
     seconds: float
+    absent: tuple[str, ...] = ()
+    error: str = ""
 
     @property
     def partial(self) -> bool:
@@ -53,11 +66,13 @@ class Outcome:
 
     def __str__(self) -> str:
         fresh = f"{self.fresh:,} of them now, in {self.seconds:.0f} s"
-        errors = f"; {self.errors:,} raised an error" if self.errors else ""
+        errors = f"; {self.errors:,} raised an error, most often {self.error}" if self.errors else ""
         state = "interrupted: the same command goes on from here" if self.partial else "done"
-        return f"{self.done:,} of {self.planned:,} rows, {fresh}{errors}: {state}"
+        without = [f"without {line}" for line in self.absent]
+        return "\n".join([*without, f"{self.done:,} of {self.planned:,} rows, {fresh}{errors}: {state}"])
 
 
+@checked
 def compare(
     suite: Suite,
     folder: Path,
@@ -70,7 +85,8 @@ def compare(
 ) -> Outcome:
     """Run a comparison, or what is left of it, into a folder. Ctrl-C, or worse, loses none of the finished tasks.
 
-    Rows, but for their times, depend neither on ``jobs`` nor on the backend nor on interruptions.
+    Rows, but for their times, depend neither on ``jobs`` nor on the backend nor on interruptions. A case that a robot
+    has no task of is left out, and the outcome says so.
 
     Args:
         suite: What to compare.
@@ -83,29 +99,62 @@ def compare(
 
     Raises:
         MissingExtra: joblib, pyarrow or distributed are not installed.
-        InvalidSetting: The folder holds another comparison, or the scheduler cannot be reached.
+        InvalidSetting: The folder holds another comparison, another process works on it, jobs are none, or the
+            scheduler cannot be reached.
+        CannotWrite: The folder cannot be made or written into.
+        NoTask: No robot has a task of any of the cases.
+        Interrupted: Ctrl-C; its ``result`` is the outcome so far, and the same call goes on from there.
     """
     need_parquet()
+    if jobs == 0 or abs(jobs) > MOST_JOBS:
+        raise InvalidSetting(f"jobs is a number of processes, 1 to {MOST_JOBS:,}, or -1: one a core; got {jobs}")
+    one_of("backend", backend, Backend)
+    writable(folder, folder=True)
+    need_joblib()
     began = perf_counter()
-    open_record(folder, Record.of(suite))
-    environment.record(folder, command)
-    rows = {trial.key: trial for trial in read_rows(folder)}
-    before = len(rows)
-    with contextlib.suppress(KeyboardInterrupt), _bar(console) as bar, Appender(folder) as file:
-        bar_task = bar.add_task("comparing", total=suite.trials, completed=before)
-        for trials in _worked(list(suite.units(rows.keys())), jobs, backend, scheduler):
-            file.add(trials)
-            rows.update((trial.key, trial) for trial in trials)
-            bar.update(bar_task, completed=len(rows), description=f"{trials[-1].robot}, {trials[-1].case}")
-    write_parquet(folder, rows.values())
-    errors = sum(trial.error is not None for trial in rows.values())
-    return Outcome(folder, len(rows), suite.trials, len(rows) - before, errors, perf_counter() - began)
+    absent = suite.absent()
+    if len(absent) == len(suite.arms) * len(suite.tasks):
+        raise NoTask("; ".join(f"{name}: {reason}" for name, reason in absent.items()))
+    record = replace(Record.of(suite), absent=absent)
+    check_record(folder, record)
+    folder.mkdir(parents=True, exist_ok=True)
+    with locked(folder, "comparison"):
+        write_record(folder, replace(record, files=pack(folder, suite)))
+        environment.record(folder, command)
+        rows = {trial.key: trial for trial in read_rows(folder)}
+        before = len(rows)
+
+        def outcome() -> Outcome:
+            write_parquet(folder, rows.values())
+            errors = Counter(trial.error for trial in rows.values() if trial.error is not None)
+            ((error, _),) = errors.most_common(1) or [("", 0)]
+            counts = (len(rows), record.trials, len(rows) - before, errors.total(), perf_counter() - began)
+            return Outcome(folder, *counts, tuple(f"{name}: {why}" for name, why in absent.items()), error)
+
+        try:
+            with _bar(console) as bar, Appender(folder) as file:
+                bar_task = bar.add_task("comparing", total=record.trials, completed=before)
+                for trials in _worked(list(suite.units(rows.keys(), absent)), jobs, backend, scheduler):
+                    file.add(trials)
+                    rows.update((trial.key, trial) for trial in trials)
+                    bar.update(bar_task, completed=len(rows), description=f"{trials[-1].robot}, {trials[-1].case}")
+        except KeyboardInterrupt:
+            raise Interrupted(outcome()) from None
+        return outcome()
+
+
+def need_joblib() -> None:
+    """Make sure that tasks can be handed to workers.
+
+    Raises:
+        MissingExtra: joblib is not installed.
+    """
+    if find_spec("joblib") is None:
+        raise MissingExtra("comparing methods", "compare")
 
 
 def _worked(units: list[Unit], jobs: int, backend: Backend, scheduler: str | None) -> Iterator[list[Trial]]:
     """The rows of units, in the order in which they are finished."""
-    if find_spec("joblib") is None:
-        raise MissingExtra("comparing methods", "compare")
     from joblib import Parallel, delayed, parallel_config
 
     with contextlib.ExitStack() as stack:

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -15,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 CONFIDENCE, SIGNIFICANT = 0.95, 0.05
+EXACT = 50  # differences, up to which p-values are exact: a quarter of a millisecond each
 
 
 def wilson(successes: int, trials: int) -> tuple[float, float]:
@@ -107,11 +109,32 @@ class Pair:
 
 
 def signed_rank(difference: ArrayLike) -> float:
-    """Two-sided p-value of Wilcoxon's signed-rank test; tasks without a difference are left out, as he did."""
+    """Two-sided p-value of Wilcoxon's signed-rank test; tasks without a difference are left out, as he did.
+
+    Exact for up to 50 differences, ties or not: the sums of ranks that all 2^n choices of signs give are counted. For
+    more, the normal approximation, with its variance corrected for ties.
+    """
     from scipy import stats
 
     d = np.asarray(difference, dtype=float)
-    return float(stats.wilcoxon(d).pvalue) if (d != 0.0).any() else 1.0
+    d = d[d != 0.0]
+    n = len(d)
+    if n == 0:
+        return 1.0
+    ranks = stats.rankdata(np.abs(d))
+    above = float(ranks[d > 0.0].sum())
+    if n > EXACT:
+        _, ties = np.unique(ranks, return_counts=True)
+        variance = n * (n + 1) * (2 * n + 1) / 24.0 - float((ties**3 - ties).sum()) / 48.0
+        return math.erfc(abs(above - n * (n + 1) / 4.0) / math.sqrt(2.0 * variance))
+    doubled = np.round(2.0 * ranks).astype(np.int64)  # ranks of ties are halves
+    share = np.zeros(int(doubled.sum()) + 1)  # of the choices of signs, by twice their sum of ranks
+    share[0] = 1.0
+    for rank in doubled:
+        share[rank:] += share[:-rank].copy()
+        share /= 2.0
+    at = round(2.0 * above)
+    return float(min(1.0, 2.0 * min(share[: at + 1].sum(), share[at:].sum())))
 
 
 def compare_pairs(pairs: Sequence[tuple[str, str, ArrayLike, ArrayLike]]) -> list[Pair]:

@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.record import Record
 from pin_metaik.compare.results import Results
 from pin_metaik.compare.trial import Trial
@@ -26,15 +27,18 @@ def need_parquet() -> None:
         raise MissingExtra("writing Parquet", "compare")
 
 
-def open_record(folder: Path, record: Record) -> None:
-    """Make the folder for a comparison, or go on with the one in it, which may have grown.
+def check_record(folder: Path, record: Record) -> None:
+    """Make sure that a folder is good for a comparison: it has none yet, or this one, which may have grown.
 
     Raises:
         InvalidSetting: The folder holds rows of another budget or seed, or of more than is asked for now.
     """
     if (folder / RECORD).exists():
         record.check_grown_from(read_record(folder), folder)
-    folder.mkdir(parents=True, exist_ok=True)
+
+
+def write_record(folder: Path, record: Record) -> None:
+    """Write down what is compared."""
     replace_text(folder / RECORD, json.dumps(record.to_json(), indent=2) + "\n")
 
 
@@ -70,6 +74,7 @@ def read_rows(folder: Path) -> list[Trial]:
     return list(rows.values())
 
 
+@checked
 def read_results(folder: Path) -> Results:
     """The comparison of a folder and its rows so far, for statistics.
 

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Container, Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, field
 from typing import Any
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.case import Case
 from pin_metaik.compare.lookup import case_of, method_of
 from pin_metaik.compare.method import Method
 from pin_metaik.compare.methods.peers import Peer
+from pin_metaik.compare.trial import generator
 from pin_metaik.compare.unit import Unit
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.robots import load_robot
 
 
+@checked
 @dataclass(frozen=True)
 class Suite:
     """A comparison.
@@ -65,8 +68,20 @@ class Suite:
         """How many rows it has."""
         return len(self.arms) * len(self.tasks) * len(self.entrants) * self.targets * self.seeds
 
-    def units(self, done: Set[tuple[str, str, str, int, int]] = frozenset()) -> Iterator[Unit]:
-        """The work that is left, a task at a time."""
+    def absent(self) -> dict[str, str]:
+        """Why a robot has no task of a case, by ``robot/case``; of those that have some, nothing."""
+        found = {}
+        for (robot, spec), case in itertools.product(self.arms.items(), self.tasks.values()):
+            reason = case.lacks(load_robot(spec), generator(self.rng, robot, case.name))
+            if reason:
+                found[pair_name(robot, case.name)] = reason
+        return found
+
+    @checked
+    def units(
+        self, done: Set[tuple[str, str, str, int, int]] = frozenset(), absent: Container[str] = ()
+    ) -> Iterator[Unit]:
+        """The work that is left, a task at a time, without what is ``absent``."""
         for (robot, spec), case, target in itertools.product(
             self.arms.items(), self.tasks.values(), range(self.targets)
         ):
@@ -76,8 +91,13 @@ class Suite:
                 for seed in range(self.seeds)
                 if (robot, case.name, method.name, target, seed) not in done
             ]
-            if left:
+            if left and pair_name(robot, case.name) not in absent:
                 yield Unit(robot, spec, case, target, tuple(left), self.budget, self.rng)
+
+
+def pair_name(robot: str, case: str) -> str:
+    """What a case of a robot is called."""
+    return f"{robot}/{case}"
 
 
 def _named(kind: str, names: Sequence[str], things: Iterable[Any]) -> dict[str, Any]:

@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.case import Attempt, Case, Task, travel
 from pin_metaik.compare.method import Answer, Method
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik import IKProblem
 
 Array = NDArray[np.float64]
@@ -86,8 +88,12 @@ class Trial:
         return asdict(self)
 
     @staticmethod
+    @checked
     def of(row: Mapping[str, Any]) -> Trial:
         """What ``row`` made, read back from JSON."""
+        fields = Trial.__dataclass_fields__
+        if wrong := fields.keys() ^ row.keys():
+            raise InvalidSetting(f"a row of a comparison has the keys {', '.join(fields)}, and {min(wrong)!r} differs")
         vectors = {name: None if row[name] is None else tuple(row[name]) for name in ("x", "curve")}
         return Trial(**{**row, **vectors})
 

@@ -9,6 +9,7 @@ from pin_metaik.collision import CollisionWorld
 from pin_metaik.compare.case import Case, Task
 from pin_metaik.compare.method import Method
 from pin_metaik.compare.trial import Trial, attempt, failed, generator
+from pin_metaik.interrupts import Pressed
 from pin_metaik.kinematics import Chain
 from pin_metaik.robots import Robot, load_robot
 
@@ -42,10 +43,19 @@ class Unit:
         return self.case.task(chain, world, generator(self.rng, self.robot, self.case.name, self.target))
 
     def work(self) -> list[Trial]:
-        """Run the trials; a case that cannot draw its task is an error in each of their rows."""
+        """Run the trials; a case that cannot draw its task is an error in each of their rows.
+
+        Raises:
+            KeyboardInterrupt: Ctrl-C, also where a method has swallowed it: what it answered then is no row.
+        """
+        with Pressed() as pressed:
+            return self._rows(pressed)
+
+    def _rows(self, pressed: Pressed) -> list[Trial]:
         try:
             task = self.task()
         except Exception as error:
+            pressed.check()
             return [
                 failed(Trial(self.robot, self.case.name, method.name, self.target, seed, self.budget), error)
                 for method, seed in self.left
@@ -56,7 +66,9 @@ class Unit:
             if (id(task.chain), method.name) not in _warm:  # tables and compiled code are made before anything is timed
                 _warm.add((id(task.chain), method.name))
                 attempt(*given)
+                pressed.check()
             trials.append(attempt(*given))
+            pressed.check()
         return trials
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.compiled.on_disk import MachineCode
+from pin_metaik.interrupts import Pressed
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -56,9 +57,11 @@ def jit(signature: str) -> Callable[[F], F]:
             notice.daemon = True
             notice.start()
             try:
-                loop = kept(fastmath=LOOSE, **OPTIONS)(function)
-                loop.compile(versions[without])
-                loop.disable_compile()
+                with Pressed() as pressed:
+                    loop = kept(fastmath=LOOSE, **OPTIONS)(function)
+                    loop.compile(versions[without])
+                    loop.disable_compile()
+                    pressed.check()  # LLVM calls back, and what is raised in there is dropped
                 return cast(Callable[..., Any], loop)
             finally:
                 notice.cancel()

@@ -36,18 +36,15 @@ def keep_clear(first: IKResult, q0: ArrayLike | None, solver: IKSolver, world: C
     base = chain.reference if q0 is None else chain.configuration(q0)
     ledger = Ledger(problem, solver.budget, began - first.seconds, first.x)
     ledger.spent = first.evaluations
-    search = ClearSearch(problem, world, base, ledger, rng)
+    search = ClearSearch(problem.whole if problem.loose else problem, world, base, ledger, rng)
     free: NDArray[np.float64] | None = None
     if not _hopeless(problem, world, first.q):
-        try:
-            free = search.run(first.x, make(FALLBACK if solver.seeder in (None, "auto") else solver.seeder))
-        except KeyboardInterrupt:
-            ledger.interrupted = True
+        free = search.run(first.x, make(FALLBACK if solver.seeder in (None, "auto") else solver.seeder))
     if free is not None:
         q, status = chain.q(chain.limits.nearest_turns(free, chain.x(base)), base), IKStatus.SOLVED
     else:
         q = chain.q(search.least_deep(), base) if search.known else first.q
-        status = IKStatus.STOPPED if ledger.interrupted or ledger.late() else IKStatus.IN_COLLISION
+        status = IKStatus.STOPPED if ledger.late() else IKStatus.IN_COLLISION
     verdict = problem.verdict(q)
     return replace(
         first,
@@ -69,11 +66,10 @@ def _hopeless(problem: IKProblem, world: CollisionWorld, q: NDArray[np.float64])
     none of them moves against it, to within the tolerances.
     """
     checker, chain = world.checker, problem.chain
-    if checker.fixed:
+    if checker.fixed or chain.limits.rigid:
         return True
     model = chain.model
-    movers = {*chain.coordinates.joints.tolist(), *(int(j) for j in model.mimicking_joints)}
-    moved_by = [movers.intersection(supports) for supports in model.supports]
+    moved_by = [chain.movers.intersection(supports) for supports in model.supports]
     slacks = {0: 0.0}  # of a joint that is held like this one, m
     for frame, target in zip(chain.frame_ids, problem.targets, strict=True):
         slack = sum(target.allowance) * LEVER

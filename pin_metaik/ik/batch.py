@@ -7,14 +7,15 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
-from typing import cast
+from typing import TypeAlias, cast
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.collision import CollisionWorld
-from pin_metaik.errors import InvalidConfiguration, InvalidSetting, InvalidTarget
+from pin_metaik.arguments import array, instance
+from pin_metaik.collision import CollisionWorld, Contact
+from pin_metaik.errors import InvalidConfiguration, InvalidTarget
 from pin_metaik.ik.problem import check_world
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.sharing import share_out, slices
@@ -23,7 +24,12 @@ from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
 from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import LANE, Chain
+from pin_metaik.optimize.settings import whole
 from pin_metaik.randomness import Rng
+
+Rows: TypeAlias = slice | NDArray[np.int64]
+
+QUICK = 1_000  # evaluations of a target in the compiled loop, which hears no Ctrl-C; 99.97 % are solved by then
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +46,9 @@ class IKBatch:
         seconds: Time the whole batch took, s.
         chain: The chain.
         targets: What was asked.
-        world: The world that nothing must collide in, if one was given.
+        world: The world that nothing must collide in, if one was given. A pickle leaves it behind, as it has all meshes
+            in it.
+        contacts: What collides, the deepest first, by number of the target; of those that are met in collision only.
     """
 
     q: NDArray[np.float64]
@@ -53,12 +61,16 @@ class IKBatch:
     chain: Chain = field(repr=False)
     targets: Sequence[TargetLike] | NDArray[np.float64] = field(repr=False)
     world: CollisionWorld | None = field(default=None, repr=False)
+    contacts: dict[int, tuple[Contact, ...]] = field(default_factory=dict, repr=False)
 
     def __len__(self) -> int:
         return len(self.q)
 
+    def __getstate__(self) -> dict[str, object]:
+        """Pickle without the world: kilobytes rather than megabytes."""
+        return {**self.__dict__, "world": None}
+
     def __getitem__(self, i: int) -> IKResult:
-        world, collides = self.world, self.status[i] is IKStatus.IN_COLLISION
         return IKResult(
             self.q[i],
             self.status[i],
@@ -66,10 +78,10 @@ class IKBatch:
             float(self.orientation_error[i]),
             int(self.evaluations[i]),
             self.seconds / len(self),
-            self.chain,
+            self.chain.at(self.q[i]),
             self.targets[i],
-            world=world,
-            contacts=world.pairs_in_collision(self.q[i]) if world is not None and collides else (),
+            world=self.world,
+            contacts=self.contacts.get(i % len(self), ()),
         )
 
     def __iter__(self) -> Iterator[IKResult]:
@@ -91,7 +103,8 @@ def solve_ik_batch(
     Args:
         chain: The joints to move and the frames to place.
         targets: Poses (k, 4, 4) or positions (k, 3), which go through one compiled loop; or a list of any targets.
-        q0: (nq,) configuration to start all from, or (k, nq), one for each; default: the chain's reference.
+        q0: (nq,) configuration to start all from, or (k, nq), one for each, with the joints outside the chain and the
+            locked ones; default: the chain's reference.
         solver: How to search; default ``IKSolver()``.
         world: What must not collide.
         workers: Threads; default: one a core. The answers do not depend on it.
@@ -103,10 +116,11 @@ def solve_ik_batch(
         InvalidSetting: If ``workers`` is less than one, or the world is another model's than the chain.
     """
     began = perf_counter()
-    if workers is not None and workers < 1:
-        raise InvalidSetting(f"workers is at least 1, got {workers}")
+    if workers is not None:
+        whole("workers", workers, 1)
     check_world(chain, world)
-    solver = solver or DEFAULT_SOLVER
+    solver = DEFAULT_SOLVER if solver is None else solver
+    instance(IKSolver, solver=solver)
     seed = int(rng.integers(2**62)) if isinstance(rng, np.random.Generator) else rng
     array = _as_array(targets)
     asked = cast(Sequence[TargetLike], targets) if array is None else array
@@ -125,29 +139,42 @@ def solve_ik_batch(
         batch.q[i], batch.success[i], batch.status[i] = result.q, result.success, result.status
         batch.position_error[i], batch.orientation_error[i] = result.position_error, result.orientation_error
         batch.evaluations[i] = result.evaluations
+        if result.contacts:
+            batch.contacts[i] = result.contacts
 
-    settings = solver.lane if array is not None and len(chain.frames) == 1 else None
-    workers = workers or os.cpu_count() or 1
+    settings = solver.lane if array is not None and chain.has_lane else None
+    workers = min(workers or os.cpu_count() or 1, max(k, 1))
     left: Iterable[int] = range(k)
-    if array is not None and settings is not None:
+    if array is not None and settings is not None and k:
         poses, starts = _as_poses(array), drawn(chain, seed, 0, LANE)
-        lane = chain.pose_lane
-        if array.ndim == 2:
-            lane, settings = chain.position_lane, np.array([*settings[:5], math.inf])
+        aligned = math.inf if array.ndim == 2 else settings[5]
+        settings = np.array([*settings[:3], min(settings[3], QUICK), settings[4], aligned])
 
-        def together(part: slice) -> None:
-            chain.kernels.solve_poses(
-                lane.block, lane.rows, starts, settings, poses[part], batch.q[part], batch.evaluations[part]
-            )
-            _judge(batch, poses[part], settings[4:], part)
+        def together(part: Rows) -> None:
+            q, evaluations, goals = batch.q[part], batch.evaluations[part], poses[part]
+            here = chain.at(q[0])
+            lane = here.pose_lane if array.ndim == 3 else here.position_lane
+            chain.kernels.solve_poses(lane.block, lane.rows, starts, settings, goals, q, evaluations)
+            batch.q[part], batch.evaluations[part] = q, evaluations
+            _judge(batch, goals, settings[4:], part)
 
-        share_out(together, slices(k, workers), workers)
+        share_out(together, _parts(chain, bases, workers), workers)
         left = np.flatnonzero(~batch.success).tolist()
     share_out(alone, left, workers)
     return replace(batch, seconds=perf_counter() - began)
 
 
-def _judge(batch: IKBatch, poses: NDArray[np.float64], tolerances: NDArray[np.float64], part: slice) -> None:
+def _parts(chain: Chain, bases: NDArray[np.float64], workers: int) -> list[Rows]:
+    """The rows of bases (k, nq) in parts, each with the joints that the chain holds in one place."""
+    if not chain.held or (bases == bases[0])[:, chain.held].all():
+        return [*slices(len(bases), workers)]
+    _, group = np.unique(bases[:, chain.held], axis=0, return_inverse=True)
+    order, sizes = np.argsort(group, kind="stable"), np.bincount(group)
+    groups = np.split(order, np.cumsum(sizes)[:-1])
+    return [rows[part] for rows in groups for part in slices(len(rows), workers)]
+
+
+def _judge(batch: IKBatch, poses: NDArray[np.float64], tolerances: NDArray[np.float64], part: Rows) -> None:
     """Let Pinocchio judge one part of the batch."""
     chain, q = batch.chain, batch.q[part]
     errors = np.empty((len(q), 2))
@@ -169,7 +196,7 @@ def _as_array(targets: ArrayLike | Sequence[TargetLike]) -> NDArray[np.float64] 
         return None
     try:
         array = np.array(targets, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         if isinstance(targets, Sequence):
             return None
         raise InvalidTarget(f"targets are poses (k, 4, 4), positions (k, 3) or a list, got {targets!r}") from None
@@ -193,7 +220,7 @@ def _bases(chain: Chain, q0: ArrayLike | None, k: int) -> NDArray[np.float64]:
     """Configurations to start from (k, nq), inside the limits."""
     if q0 is None:
         return np.repeat(chain.reference[None], k, axis=0)
-    given = np.asarray(q0, dtype=float)
+    given = array("q0", q0, "...", chain.model.nq, error=InvalidConfiguration)
     if given.ndim == 2 and given.shape == (k, chain.model.nq):
         return chain.inside(given)
     if given.ndim == 2:

@@ -47,7 +47,7 @@ class ClearSearch:
         self.complete = False
         self._depths = np.full(CANDIDATES, np.nan)  # of the solutions found, NaN where not known yet
         self._pushed: set[int] = set()
-        self._redundant = problem.chain.n > len(problem.rows)
+        self._redundant = problem.chain.n > len(problem.rows) or problem.loose
         self._generator = as_generator(DEFAULT_SEED if rng is None else rng)
 
     def run(self, x: NDArray[np.float64], seeder: Metaheuristic) -> NDArray[np.float64] | None:

@@ -26,6 +26,7 @@ from pin_metaik.kinematics import LANE, Chain
 from pin_metaik.randomness import Rng
 
 SOLVED = IKStatus.SOLVED
+AT_MIDDLE = 300.0  # evaluations, at most, for the middle of tolerances that are loose
 
 
 def solve_fast(
@@ -34,7 +35,7 @@ def solve_fast(
     """The result; where the first starts do not solve it, what they came to; None for what the lane cannot take."""
     began = perf_counter()
     settings = solver.lane
-    if settings is None or len(chain.frames) > 1:
+    if settings is None or not chain.has_lane:
         return None
     near = aligned = DEFAULT_TOLERANCE
     asked: Target | NDArray[np.float64] | None = None
@@ -57,7 +58,8 @@ def solve_fast(
         else:
             return None
     if asked is not None:
-        settings = np.array([*settings[:4], near, aligned])
+        most = AT_MIDDLE if isinstance(asked, Target) and asked.loose else math.inf
+        settings = np.array([*settings[:3], min(settings[3], most), near, aligned])
     oriented = aligned < math.inf
     lane = chain.pose_lane if oriented else chain.position_lane
     starts = lane.starts if rng is None else drawn(chain, rng, 0, LANE)
@@ -69,7 +71,7 @@ def solve_fast(
             met, position, quaternion = lane.solve_directly(lane.block, matrix, q)
         if not met:
             spent, position, quaternion = lane.solve_pose(lane.block, lane.rows, starts, settings, matrix, q)
-    except (TypeError, ValueError):  # whatever it is, the long way takes it or says what is wrong
+    except (TypeError, ValueError, OverflowError):  # whatever it is, the long way takes it or says what is wrong
         return None
     if spent < 0:
         return None
@@ -88,5 +90,5 @@ def as_numbers(target: object) -> NDArray[np.float64]:
     """Lists or an array of any numbers as an array; an empty one, if they are none."""
     try:
         return np.array(target, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return np.empty(0)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine import Refinement
 from pin_metaik.ik.result import IKStatus
-from pin_metaik.optimize import Budget, Result, Status
+from pin_metaik.optimize import Budget, Result
 
 ENDLESS = 2**62
 
@@ -20,10 +20,10 @@ class Ledger:
     """Keeps the best coordinates and the budget of one search.
 
     Attributes:
+        problem: What is searched for, and what costs are of.
         x: (n,) the best coordinates so far.
         met: Whether they met the tolerances, by the kernels; Pinocchio has the last word.
         spent: Evaluations so far.
-        interrupted: Whether Ctrl-C ended it.
         traces: Convergence of each round of a seeder: (g, 2) evaluations and best cost.
     """
 
@@ -31,9 +31,8 @@ class Ledger:
         self.x = x0
         self.met = False
         self.spent = 0
-        self.interrupted = False
         self.traces: list[NDArray[np.float64]] = []
-        self._problem = problem
+        self.problem = problem
         self._budget = budget
         self._began = began
         self._cost = math.inf
@@ -41,10 +40,10 @@ class Ledger:
     @property
     def status(self) -> IKStatus:
         """Why a search ended that has not solved its problem."""
-        if self._problem.gap > 0.0:
+        if self.problem.gap > 0.0 or self.problem.limits.rigid:
             return IKStatus.UNREACHABLE
         timed = self._budget.seconds is not None and self.left() > 0
-        return IKStatus.STOPPED if self.interrupted or timed else IKStatus.OUT_OF_TOLERANCE
+        return IKStatus.STOPPED if timed else IKStatus.OUT_OF_TOLERANCE
 
     def left(self, share: float = 1.0) -> int:
         """Evaluations left of this share of the budget."""
@@ -52,13 +51,13 @@ class Ledger:
         return ENDLESS if total is None else max(0, math.ceil(share * total) - self.spent)
 
     def over(self, share: float = 1.0) -> bool:
-        """Whether the search is over: solved, interrupted, or this share of the budget spent."""
-        return self.met or self.interrupted or self.left(share) == 0 or self.late(share)
+        """Whether the search is over: solved, or this share of the budget spent."""
+        return self.met or self.left(share) == 0 or self.late(share)
 
     def slice(self, share: float) -> Budget:
         """A budget for one round of seeding: this share of what is left."""
         total, seconds = self._budget.evaluations, self._budget.seconds
-        goal = self._problem.good_enough if self._budget.target is None else self._budget.target
+        goal = self.problem.good_enough if self._budget.target is None else self._budget.target
         return Budget(
             None if total is None else max(1, int(share * self.left())),
             None if seconds is None else max(1e-3, share * (seconds - self._elapsed())),
@@ -71,7 +70,7 @@ class Ledger:
         if refinement.met:
             self.met, self.x = True, refinement.x
             return
-        cost = float(self._problem.costs(refinement.x[None])[0])
+        cost = float(self.problem.costs(refinement.x[None])[0])
         if cost < self._cost:
             self._cost, self.x = cost, refinement.x
 
@@ -80,7 +79,6 @@ class Ledger:
         if found.trace is not None:
             self.traces.append(found.trace + np.array([self.spent, 0.0]))
         self.spent += found.evaluations
-        self.interrupted = self.interrupted or found.status is Status.INTERRUPTED
         if found.cost < self._cost:
             self._cost, self.x = found.cost, found.x
 

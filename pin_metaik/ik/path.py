@@ -13,6 +13,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, checked, shown
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidSetting, InvalidTarget
 from pin_metaik.ik.problem import IKProblem
@@ -62,6 +63,7 @@ class IKPath:
         return x
 
 
+@checked
 def solve_ik_path(
     chain: Chain,
     targets: Sequence[TargetLike] | NDArray[np.float64],
@@ -76,7 +78,8 @@ def solve_ik_path(
     Args:
         chain: The joints to move and the frame to place.
         targets: k targets, as for ``solve_ik``; close enough to each other for the step bound.
-        q0: (nq,) configuration the path should start near; default: wherever the path as a whole is best.
+        q0: (nq,) configuration the path should start near, with the joints outside the chain and the locked ones where
+            they stay; default: wherever the path as a whole is best, from the chain's reference.
         max_step: Largest step of a joint from one pose to the next, rad or m: one number, or (n,) one a joint.
         world: What must not collide at any of the poses; the steps between them are not looked at.
         rng: Seed or generator; ``None`` is a fixed seed.
@@ -90,11 +93,15 @@ def solve_ik_path(
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
     """
     began = perf_counter()
+    if isinstance(targets, str) or not (isinstance(targets, Sequence) or np.ndim(targets)):
+        raise InvalidTarget(f"targets are a list of poses or positions, got {shown(targets)}")
     if len(targets) == 0:
         raise InvalidTarget("a path has at least one target")
-    bound = np.broadcast_to(np.asarray(max_step, dtype=float), (chain.n,))
+    given = array("max_step", max_step, "...", finite=False)
+    bound = np.full(chain.n, given) if given.ndim == 0 else array("max_step", given, chain.n, finite=False)
     if not (bound > 0.0).all():
         raise InvalidSetting(f"max_step is above 0, got {bound}")
+    chain = chain if q0 is None else chain.at(q0)
     base = chain.reference if q0 is None else chain.configuration(q0)
     problems = [IKProblem.of(chain, target, world) for target in targets]
     layers = _layers(problems, base, q0 is not None, rng)
@@ -115,6 +122,8 @@ def _layers(problems: list[IKProblem], base: NDArray[np.float64], near: bool, rn
         fresh = np.concatenate([problem.near(FRESH), drawn(problem.chain, rng, index, FRESH)])
         layer = _widened(problem, base, np.empty((0, len(x0))), followed, followed=True)
         layer = _widened(problem, base, layer, fresh)
+        if not len(layer):  # nothing in the middle of the tolerances
+            layer = _widened(problem.whole, base, _widened(problem.whole, base, layer, followed, followed=True), fresh)
         layers.append(layer)
         followed = layer if len(layer) else followed
     for i in range(len(problems) - 2, -1, -1):  # what only a later pose found may have begun earlier

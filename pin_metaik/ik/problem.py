@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import NamedTuple, cast
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, instance
 from pin_metaik.collision import CollisionWorld
-from pin_metaik.errors import FrameNotFound, InvalidSetting, InvalidTarget
+from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import Chain, Limits
 from pin_metaik.optimize import Box
+from pin_metaik.optimize.settings import few
 
 
 class Verdict(NamedTuple):
@@ -39,10 +41,13 @@ class Verdict(NamedTuple):
 class IKProblem:
     """Targets for the frames of a chain, inside limits, and perhaps in a world full of obstacles.
 
+    Joints that the chain holds are where its reference has them, but for ``verdict`` and ``accepts``, which judge whole
+    configurations; ``problem.at(q)`` is the problem with those joints elsewhere.
+
     Attributes:
         chain: The chain.
         targets: One for each of its frames, in the chain's order.
-        tasks: (T, 26) the targets as the kernels take them.
+        tasks: (T, 26) the targets as the kernels take them; a radius as a tolerance is aimed at in its middle.
         rows: (m, 2) the (frame, axis) pairs that count: three translations, three rotations, less the free ones.
         world: What must not collide; ``None``: nothing is checked.
     """
@@ -83,6 +88,25 @@ class IKProblem:
         tasks = targets[0].task[None] if len(targets) == 1 else np.array([one.task for one in targets])
         return IKProblem(chain, targets, tasks, _rows(tuple([one.counts for one in targets])), world)
 
+    def at(self, q: ArrayLike) -> IKProblem:
+        """The same problem, with the joints that the chain holds where q (nq,) has them; see ``Chain.at``."""
+        chain = self.chain.at(q)
+        return self if chain is self.chain else replace(self, chain=chain)
+
+    @cached_property
+    def whole(self) -> IKProblem:
+        """The same problem aimed at all that is accepted: what is inside a tolerance is no error, nor cost.
+
+        An answer in the middle of the tolerances is a better one, and looked for first. Where the middle is out of
+        reach, descents towards it end at a compromise that may be outside; these end inside.
+        """
+        return replace(self, tasks=np.array([target.whole_task for target in self.targets]))
+
+    @property
+    def loose(self) -> bool:
+        """Whether a target allows more than the default tolerance, so that aiming at its middle may be in vain."""
+        return any(target.loose for target in self.targets)
+
     @property
     def limits(self) -> Limits:
         """The limits of the chain's coordinates."""
@@ -106,14 +130,20 @@ class IKProblem:
 
     @cached_property
     def gap(self) -> float:
-        """How far (m) the targets are proved to be out of reach; 0 proves nothing."""
-        return max(
-            self.chain.reach(t, oriented=math.isfinite(target.allowance[1])).gap(target.pose, *target.allowance)
-            for t, target in enumerate(self.targets)
-        )
+        """How far (m) the targets, or the wrists behind them, are proved to be out of reach; 0 proves nothing."""
+        return max(self._gap(t, oriented=math.isfinite(one.allowance[1])) for t, one in enumerate(self.targets))
+
+    def gaps(self, t: int) -> tuple[float, float]:
+        """How far (m) target number t is proved to be out of reach: the frame itself, and with its orientation."""
+        oriented = math.isfinite(self.targets[t].allowance[1])
+        return self._gap(t, oriented=False), self._gap(t, oriented)
+
+    def _gap(self, t: int, oriented: bool) -> float:
+        return self.chain.reach(t, oriented).gap(self.targets[t].pose, *self.targets[t].allowance)
 
     def linearize(self, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Weighted residual r (m,) and its Jacobian by coordinate J (n, m) at x (n,)."""
+        x = array("x", x, self.chain.n)
         r, J = np.empty(len(self.rows)), np.empty((self.chain.n, len(self.rows)))
         self.chain.kernels.linearize(*self.chain.paths.arrays, self.tasks, self.rows, x, r, J)
         return r, J
@@ -124,8 +154,18 @@ class IKProblem:
             return np.empty((0, self.chain.n))
         return self.chain.branches(self.targets[0].pose.homogeneous, x0)
 
+    def branchless(self, x0: NDArray[np.float64]) -> bool:
+        """Whether the arm has a closed form and that no solution, so that to search on at length is in vain.
+
+        It is no proof: near a singularity or a limit, rounding may hide a branch, but a short search finds those.
+        """
+        formal = self.descended is None and not self.loose and len(self.chain.form) > 0
+        return formal and not len(self.branches(x0))
+
     def near(self, count: int) -> NDArray[np.float64]:
         """Sampled coordinates (count, n) of the chain's atlas with the poses nearest to the targets, nearest first."""
+        few("count", count, 0)
+        count = int(count)
         out = np.empty((count, self.chain.n))
         self.chain.kernels.neighbours(self.tasks, *self.chain.atlas.arrays, count, out)
         return out
@@ -135,15 +175,17 @@ class IKProblem:
 
         For a position alone this is the distance in metres.
         """
+        X = array("X", X, "k", self.chain.n, finite=False)
         out = np.empty(len(X))
         self.chain.kernels.costs(*self.chain.paths.arrays, self.tasks, X, out)
         return out
 
     def verdict(self, q: NDArray[np.float64]) -> Verdict:
         """Judge a configuration q (nq,) with Pinocchio's forward kinematics, the limits, and coal."""
+        q = array("q", q, self.chain.model.nq, error=InvalidConfiguration, finite=False)
         position = orientation = 0.0
-        accepted = self.chain.limits.contains(self.chain.x(q))
-        for target, placement in zip(self.targets, self.chain.placements(q), strict=True):
+        accepted = self.chain.limits.contains(self.chain.coordinates.read(q))
+        for target, placement in zip(self.targets, self.chain._placed(q), strict=True):
             judged = target.judge(placement)
             position = max(position, judged.position_error)
             orientation = max(orientation, judged.orientation_error)
@@ -158,6 +200,9 @@ class IKProblem:
 
 def check_world(chain: Chain, world: CollisionWorld | None) -> None:
     """Raise InvalidSetting if the world is another model's than the chain."""
+    instance(Chain, chain=chain)
+    if world is not None:
+        instance(CollisionWorld, world=world)
     if world is not None and world.model is not chain.model and world.model != chain.model:
         raise InvalidSetting(f"the world is of {world.model.name!r}, not of the chain's model {chain.model.name!r}")
 

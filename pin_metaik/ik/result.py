@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import TypeAlias, cast
 
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.dexterity import rank
 from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.reasons import cannot_move, collisions, no_branch, out_of_reach
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 
@@ -28,13 +29,13 @@ class IKStatus(StrEnum):
     SOLVED = "SOLVED"
     """Within the tolerances and inside the limits, by Pinocchio; in a world also free of collisions, by coal."""
     UNREACHABLE = "UNREACHABLE"
-    """Proved out of reach: farther from, or nearer to, a joint than the links between can span."""
+    """Proved out of reach: farther from, or nearer to, a joint than the links between span; or no joint can move."""
     OUT_OF_TOLERANCE = "OUT_OF_TOLERANCE"
     """The budget of evaluations is spent and nothing found is close enough."""
     IN_COLLISION = "IN_COLLISION"
     """The target is met only in collision."""
     STOPPED = "STOPPED"
-    """Time was up, or the search was interrupted."""
+    """Time was up. Ctrl-C is no status: it goes through to the caller."""
 
 
 @dataclass(eq=False, slots=True)  # not frozen: that takes four times as long to make, a tenth of a quick solve
@@ -48,10 +49,11 @@ class IKResult:
         orientation_error: Angle to the target in rad, by Pinocchio; the worst frame's; 0 when orientation is free.
         evaluations: Forward kinematics computed, one a configuration.
         seconds: Time taken, s.
-        chain: The chain.
+        chain: The chain, with its held joints where ``q`` has them (``Chain.at``).
         given: The target as it was given, or ``None``: see ``target``.
         trace: (g, 2) evaluations and best cost after each generation of the seeder, when asked for.
-        world: The world it must not collide in, if one was given.
+        world: The world it must not collide in, if one was given. A pickle leaves it behind, as it has all meshes in
+            it: a result that comes out of one has ``None``, until a world is assigned.
         contacts: What collides at ``q``, the deepest first, when the status is ``IN_COLLISION``.
         parts: Position and quaternion of a target that is a pose, in the place of a copy of it.
     """
@@ -86,6 +88,9 @@ class IKResult:
         """Whether the target is met."""
         return self.status is IKStatus.SOLVED
 
+    def __bool__(self) -> bool:
+        return self.success
+
     @property
     def x(self) -> NDArray[np.float64]:
         """(n,) the chain's coordinates at ``q``."""
@@ -110,25 +115,40 @@ class IKResult:
             case IKStatus.SOLVED:
                 return "within the tolerances and inside the limits"
             case IKStatus.UNREACHABLE:
-                return f"out of reach: at least {self.problem.gap:.3g} m beyond what the links can span"
+                return out_of_reach(self.problem)
             case IKStatus.OUT_OF_TOLERANCE:
-                stuck = f"; at a limit: {', '.join(self.binding)}" if self.binding else ""
+                still, free = cannot_move(self.problem), [n for n in self.binding if n not in self.chain.limits.stuck]
+                stuck = (f"; at a limit: {', '.join(free)}" if free else "") + (f"; {still}" if still else "")
                 asked = len(self.problem.rows)
                 lost = f"; {asked - self.rank} of {asked} directions lost there" if self.rank < asked else ""
                 spent = f"nothing close enough found in {self.evaluations} evaluations"
-                return f"{spent}; this is the nearest{stuck}{lost}"
+                return f"{no_branch(self.problem, self.x)}{spent}; this is the nearest{stuck}{lost}"
             case IKStatus.IN_COLLISION:
-                shown = "; ".join(map(str, self.contacts[:3])) + ("; ..." if len(self.contacts) > 3 else "")
+                shown = collisions(self.chain, self.world, self.contacts)
                 return f"met only in collision; the least deep found: {shown}"
             case IKStatus.STOPPED:
-                return "stopped before it was solved; this is the best so far"
+                return "time was up before it was solved; this is the best so far"
 
     def verify(self) -> bool:
-        """Judge ``q`` again by Pinocchio and the limits, and by coal in the world as it is now."""
-        return self.problem.accepts(self.q)
+        """Judge ``q`` again by Pinocchio and the limits, and by coal in the world as it is now.
+
+        Without its world, after it was pickled, what collided still counts.
+        """
+        return self.problem.accepts(self.q) and not (self.world is None and self.contacts)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Pickle without the world: kilobytes rather than megabytes."""
+        return {**{name: getattr(self, name) for name in self.__slots__}, "world": None}
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        for name, value in state.items():
+            setattr(self, name, value)
+
+    def __copy__(self) -> IKResult:
+        return replace(self)
 
     def __str__(self) -> str:
         return (
             f"{self.status}: {self.position_error:.3g} m, {self.orientation_error:.3g} rad from the target after "
-            f"{self.evaluations} evaluations in {1e3 * self.seconds:.4g} ms"
+            f"{self.evaluations} evaluation{'s' * (self.evaluations != 1)} in {1e3 * self.seconds:.4g} ms"
         )

@@ -2,19 +2,48 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
+from threading import Thread
 from typing import TypeVar
 
 T = TypeVar("T")
 LEAST, MOST = 128, 256  # targets that a worker takes at a time; the compiled loop takes 0.1 to 1 ms for them
 
 
+class Helper(Thread):
+    """A thread that works until it is done, or told to stop.
+
+    Attributes:
+        error: What its work raised.
+    """
+
+    def __init__(self, work: Callable[[], None]) -> None:
+        super().__init__(daemon=True)
+        self.error: BaseException | None = None
+        self._work = work
+
+    def run(self) -> None:
+        """Work."""
+        try:
+            self._work()
+        except BaseException as error:
+            self.error = error
+
+    def stop(self) -> None:
+        """End the work as Ctrl-C ends that of the main thread: at the next step of its Python.
+
+        The compiled loop it may be in ends first. ``SystemExit`` is what a thread ends with without a word.
+        """
+        if self.ident is not None:
+            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(self.ident), ctypes.py_object(SystemExit))
+
+
 def share_out(work: Callable[[T], None], parts: Iterable[T], workers: int) -> None:
     """Do the work for all parts, this thread and others each taking the next part when they are free.
 
     Others only help: a thread that waited for their results would be woken for each, and each time take the interpreter
-    from them.
+    from them. Ctrl-C reaches the main thread only, which stops the others; what any of them raises ends the work, too.
     """
     waiting = iter(list(parts))  # of a list, threads may take from it without a lock
 
@@ -22,15 +51,30 @@ def share_out(work: Callable[[T], None], parts: Iterable[T], workers: int) -> No
         try:
             for part in waiting:
                 work(part)
-        finally:
-            for _ in waiting:  # if it ended badly, nobody goes on
+        except BaseException:
+            for _ in waiting:  # nobody goes on
                 pass
+            raise
 
-    with ThreadPoolExecutor(max(1, workers - 1)) as pool:
-        helpers = [pool.submit(take) for _ in range(workers - 1)]
+    helpers = [Helper(take) for _ in range(workers - 1)]
+    try:
+        for helper in helpers:
+            helper.start()
         take()
+        for helper in helpers:
+            helper.join()
+    except BaseException:
+        for _ in waiting:
+            pass
+        for helper in helpers:
+            helper.stop()
+        for helper in helpers:
+            if helper.ident is not None:
+                helper.join()
+        raise
     for helper in helpers:
-        helper.result()
+        if helper.error is not None:
+            raise helper.error
 
 
 def slices(k: int, workers: int) -> list[slice]:

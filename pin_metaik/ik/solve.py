@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import instance
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.ik.avoid import keep_clear
 from pin_metaik.ik.fast import solve_fast
@@ -14,7 +15,7 @@ from pin_metaik.ik.result import IKResult
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
-from pin_metaik.randomness import Rng
+from pin_metaik.randomness import Rng, as_generator
 
 
 def solve_ik(
@@ -32,9 +33,9 @@ def solve_ik(
         chain: The joints to move and the frames to place.
         target: World pose of the chain's frame (``pin.SE3`` or 4x4), a position (3,) in m, a ``Target``, or one
             ``Target`` for each frame of a chain that has several.
-        q0: (nq,) configuration to start from; joints outside the chain stay as they are in it. An arm with a closed
-            form stays on the branch that it is on (shoulder, elbow and wrist), if that has a solution. Default: the
-            chain's reference.
+        q0: (nq,) configuration to start from; joints outside the chain, and locked ones, are where it has them, in the
+            search and in the answer. An arm with a closed form stays on the branch that it is on (shoulder, elbow and
+            wrist), if that has a solution. Default: the chain's reference.
         solver: How to search; default ``IKSolver()``.
         world: What must not collide: the robot with itself, with what it holds, and with obstacles. Where the
             solver's solution does, others are searched for, by damped least squares whatever its refiner, then by
@@ -51,8 +52,21 @@ def solve_ik(
         InvalidBounds: If a joint of the chain has no finite range to search in.
         InvalidSetting: If the world is another model's than the chain.
     """
-    solver = solver or DEFAULT_SOLVER
-    fast = solve_fast(chain, target, q0, solver, rng)
+    solver = DEFAULT_SOLVER if solver is None else solver
+    try:
+        if chain.held and q0 is not None:
+            chain = chain.at(q0)
+        fast = solve_fast(chain, target, q0, solver, rng)
+    except (
+        AttributeError,
+        TypeError,
+    ):  # told here, where looking costs a quick solve nothing
+        instance(Chain, chain=chain)
+        instance(IKSolver, solver=solver)
+        as_generator(rng)
+        raise
+    if world is not None:
+        instance(CollisionWorld, world=world)
     if isinstance(fast, IKResult):
         result = fast
     else:

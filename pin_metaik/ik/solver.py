@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from functools import cached_property
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+from itertools import islice
 from time import perf_counter
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked, instance
 from pin_metaik.errors import InvalidBudget, InvalidSetting, UnknownName
 from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.nullspace import slide
@@ -21,8 +25,11 @@ from pin_metaik.ik.select import SELECT
 from pin_metaik.ik.solutions import collect
 from pin_metaik.ik.starts import start_batches
 from pin_metaik.ik.target import DEFAULT_TOLERANCE
+from pin_metaik.kinematics.closed_form import BRANCHLESS
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
 from pin_metaik.randomness import DEFAULT_SEED, Rng, as_generator
+
+Refine: TypeAlias = Callable[[IKProblem, NDArray[np.float64], int], Refinement]
 
 ELITE = 8  # points of a seeder's search that are refined
 SEEDER_SHARE = 0.25  # of the budget, for one round of the seeder before its elite is refined
@@ -32,6 +39,7 @@ CHOICE, CHOICE_SHARE = 64, 0.5  # solutions to choose from at most, and the shar
 RESERVE = 0.05  # of the budget, to settle down at the nearest pose when none is near enough
 
 
+@checked
 @dataclass(frozen=True)
 class IKSolver:
     """How to search: where starts come from, what refines them, and how much may be spent.
@@ -90,23 +98,29 @@ class IKSolver:
         ``first`` is what the fast lane came to, if it has tried the first starts already.
         """
         began = perf_counter()
+        instance(IKProblem, problem=problem)
+        if first is not None:
+            instance(Refinement, first=first)
+        if q0 is not None:
+            problem = problem.at(q0)
         chain = problem.chain
         base = chain.reference if q0 is None else chain.configuration(q0)
         x0 = chain.x(base)
-        ledger = Ledger(problem, self.budget, began, x0)
+        brief = self.seeder == "auto" and problem.branchless(x0)
+        budget = replace(self.budget, evaluations=self._brief) if brief else self.budget
+        ledger = Ledger(problem.whole if problem.loose else problem, budget, began, x0)
         if first is not None:
             ledger.add(first)
-        try:
-            if self.select != "first":
-                self._choose(problem, x0, base, rng, ledger)
-            if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
-                self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
-            if self._seeder is not None and not ledger.over() and problem.gap == 0.0:
-                self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
-            if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None:
-                ledger.add(self._refiner.settle(problem, ledger.x, ledger.left()))
-        except KeyboardInterrupt:
-            ledger.interrupted = True
+        if chain.limits.rigid:  # there is nothing to search: it stands where it stands
+            ledger.x, ledger.met, ledger.spent = chain.limits.lower, True, 1
+        if self.select != "first" and not ledger.met:
+            self._choose(problem, x0, base, rng, ledger)
+        if not ledger.met and self._refiner is not None and (self.seeder is None or self.seeder == "auto"):
+            self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
+        if self._seeder is not None and not brief and not ledger.over() and problem.gap == 0.0:
+            self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
+        if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None:
+            ledger.add(self._refiner.settle(ledger.problem, ledger.x, ledger.left()))
         q = base.copy()
         chain.coordinates.write(ledger.x, q)
         verdict = problem.verdict(q)
@@ -134,7 +148,7 @@ class IKSolver:
         """
         measure = SELECT[self.select]
         budget = Budget(evaluations=max(1, ledger.left(CHOICE_SHARE)), seconds=self.budget.seconds)
-        found, _, spent = collect(problem, x0, rng, limit=CHOICE, apart=1e-2, budget=budget)
+        problem, found, _, spent = collect(problem, x0, rng, limit=CHOICE, apart=1e-2, budget=budget)
         ledger.spent += spent
         if problem.world is not None:
             found = found[[problem.accepts(q) for q in problem.chain.q(found, base)]]
@@ -144,6 +158,12 @@ class IKSolver:
             better = slide(problem, best, x0, measure)
             kept = problem.world is None or problem.accepts(problem.chain.q(better, base))
             ledger.x, ledger.met = better if kept else best, True
+
+    @property
+    def _brief(self) -> int:
+        """Evaluations in all where the closed form of an arm has no solution."""
+        most = math.ceil(BRANCHLESS / RESTART_SHARE)
+        return most if self.budget.evaluations is None else min(most, self.budget.evaluations)
 
     @cached_property
     def lane(self) -> NDArray[np.float64] | None:
@@ -161,18 +181,38 @@ class IKSolver:
     def _restart(
         self, problem: IKProblem, refiner: Refiner, x0: NDArray[np.float64], rng: Rng, ledger: Ledger, tried: int
     ) -> None:
-        """Refine from x0 (n,), then from random starts; the automatic solver also from an atlas of the chain."""
+        """Refine from x0 (n,), then from random starts; ``tried`` says that the first batch of them has been.
+
+        The middle of the tolerances is tried first. Where they are loose, all further batches aim at all that is
+        accepted; where they are not, a last one does.
+        """
         share = 1.0 - RESERVE if self._seeder is None else RESTART_SHARE
-        refine = refiner.refine
-        if self._seeder is not None and isinstance(refiner, DLS) and not tried:
-            refine = refiner.refine_anywhere
-        if tried and (ledger.over(share) or problem.gap > 0.0):
+        batches = partial(start_batches, problem.chain, x0, rng, self.starts)
+        anywhere = refiner.refine
+        if self._seeder is not None and isinstance(refiner, DLS):
+            anywhere = refiner.refine_anywhere
+
+        def over(share: float) -> bool:
+            return ledger.over(share) or problem.gap > 0.0
+
+        def refine(aim: IKProblem, first: Refine, batches: Iterator[NDArray[np.float64]], share: float) -> None:
+            for starts in batches:
+                before = ledger.spent
+                ledger.add(first(aim, starts, ledger.left(share)))
+                if over(share) or ledger.spent == before:
+                    return
+                first = refiner.refine
+
+        if problem.loose:
+            if not tried:
+                refine(problem, anywhere, islice(batches(), 1), share)
+            if not over(share):
+                refine(problem.whole, anywhere, batches(), share)
             return
-        for starts in start_batches(problem.chain, x0, rng, self.starts, tried):
-            ledger.add(refine(problem, starts, ledger.left(share)))
-            if ledger.over(share) or problem.gap > 0.0:
-                return
-            refine = refiner.refine
+        if not tried or not over(share):
+            refine(problem, refiner.refine if tried else anywhere, batches(tried), share)
+        if not ledger.met and self.starts is None and not over(share + RESERVE):  # no start counts twice
+            refine(problem.whole, anywhere, islice(batches(), 1), share + RESERVE)
 
     def _seed(
         self,
@@ -188,12 +228,12 @@ class IKSolver:
         while True:
             budget = ledger.slice(share)
             found = minimize(
-                problem.costs, problem.box, seeder, budget, generator, seeds=seeds, trace=self.trace, keep=ELITE
+                ledger.problem.costs, problem.box, seeder, budget, generator, seeds=seeds, trace=self.trace, keep=ELITE
             )
             ledger.add_search(found)
             if self._refiner is None:
                 return
-            ledger.add(self._refiner.refine(problem, found.elite, ledger.left(1.0 - RESERVE)))
+            ledger.add(self._refiner.refine(ledger.problem, found.elite, ledger.left(1.0 - RESERVE)))
             if ledger.over(1.0 - RESERVE) or problem.gap > 0.0:
                 return
             seeds = None

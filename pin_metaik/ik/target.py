@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cached_property, lru_cache
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, instance, shown
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.kinematics.pose import as_pose, as_position
 
-TargetLike: TypeAlias = "Target | pin.SE3 | ArrayLike"
 Tolerance: TypeAlias = float | tuple[float, float, float]
 
+Read: TypeAlias = tuple[Tolerance, tuple[float, float, float], float, bool]
+
 DEFAULT_TOLERANCE = 1e-5
+KEPT = 1024  # tolerances that have been read and are remembered
+WHOLE, EDGE = 0.99, 0.009  # of a tolerance: what is aimed at as a whole, and how near to that is near enough
 FREE = math.inf
 
 
@@ -25,10 +30,10 @@ FREE = math.inf
 class Target:
     """A pose for one frame, with tolerances and weights.
 
-    A tolerance is one number, the radius within which the error must lie, or three, one for each axis of the target
-    frame; ``inf`` frees an axis. So ``Target.at(xyz)`` frees all three rotations, and
-    ``Target(pose, orientation_tolerance=(1e-5, 1e-5, inf))`` only the one about the target's z axis. The orientation
-    error is the rotation vector log(R_target' R).
+    A tolerance is one number, the radius within which the error must lie, or three (a tuple, list or array; kept as a
+    tuple), one for each axis of the target frame; ``inf`` frees an axis. So ``Target.at(xyz)`` frees all three
+    rotations, and ``Target(pose, orientation_tolerance=(1e-5, 1e-5, inf))`` only the one about the target's z axis. The
+    orientation error is the rotation vector log(R_target' R).
 
     Attributes:
         pose: World pose the frame shall reach: ``pin.SE3`` or (4, 4); kept as ``pin.SE3``.
@@ -51,13 +56,20 @@ class Target:
     orientation_weight: float = 1.0
     task: NDArray[np.float64] = field(init=False, repr=False)  # (26,) as the kernels take it
     counts: tuple[bool, ...] = field(init=False, repr=False)  # which of the six axes are not free
+    loose: bool = field(init=False, repr=False)  # whether one of those may be off by more than the default tolerance
 
     def __post_init__(self) -> None:
         """Check everything once, where it enters."""
+        if self.frame is not None and not isinstance(self.frame, str):
+            raise InvalidTarget(f"frame is the name of one of the chain's frames, or None, got {shown(self.frame)}")
         placement, (a, b, c, x, d, e, f, y, g, h, i, z) = as_pose(self.pose)
         object.__setattr__(self, "pose", placement)
-        slack, near = _slack("position_tolerance", self.position_tolerance)
-        lean, aligned = _slack("orientation_tolerance", self.orientation_tolerance)
+        metres, slack, near, wide = _read("position_tolerance", self.position_tolerance)
+        radians, lean, aligned, broad = _read("orientation_tolerance", self.orientation_tolerance)
+        if metres is not self.position_tolerance:
+            object.__setattr__(self, "position_tolerance", metres)
+        if radians is not self.orientation_tolerance:
+            object.__setattr__(self, "orientation_tolerance", radians)
         if FREE == max(slack) == min(slack) == min(lean):
             raise InvalidTarget("this target frees every axis: nothing is left to reach")
         weight = _weight("position_weight", self.position_weight)
@@ -67,6 +79,7 @@ class Target:
         weights = (weight, weight, weight, turn, turn, turn)
         object.__setattr__(self, "task", np.array(world + slack + lean + weights + (near, aligned)))
         object.__setattr__(self, "counts", _finite(slack + lean))
+        object.__setattr__(self, "loose", wide or broad)
 
     @staticmethod
     def at(xyz: ArrayLike, *, frame: str | None = None, tolerance: Tolerance = DEFAULT_TOLERANCE) -> Target:
@@ -77,9 +90,7 @@ class Target:
     @staticmethod
     def facing(rotation: ArrayLike, *, frame: str | None = None, tolerance: Tolerance = DEFAULT_TOLERANCE) -> Target:
         """An orientation (3, 3), anywhere."""
-        matrix = np.asarray(rotation, dtype=float)
-        if matrix.shape != (3, 3):
-            raise InvalidTarget(f"an orientation has shape (3, 3), got {matrix.shape}")
+        matrix = array("an orientation", rotation, 3, 3, error=InvalidTarget)
         pose = pin.SE3(matrix, np.zeros(3))
         return Target(pose, frame, position_tolerance=FREE, orientation_tolerance=tolerance)
 
@@ -91,14 +102,14 @@ class Target:
         if isinstance(target, pin.SE3):
             return Target(target)
         try:
-            array = np.asarray(target, dtype=float)
-        except (TypeError, ValueError):
-            array = np.empty(0)
-        if array.shape == (4, 4):
-            return Target(array)
-        if array.shape == (3,):
-            return Target.at(array)
-        raise InvalidTarget(f"a target is a pin.SE3, a 4x4 matrix, a position (3,) or a Target, got {target!r}")
+            numbers = np.asarray(target, dtype=float)
+        except (TypeError, ValueError, OverflowError):
+            numbers = np.empty(0)
+        if numbers.shape == (4, 4):
+            return Target(numbers)
+        if numbers.shape == (3,):
+            return Target.at(numbers)
+        raise InvalidTarget(f"a target is a pin.SE3, a 4x4 matrix, a position (3,) or a Target, got {shown(target)}")
 
     @property
     def plain(self) -> bool:
@@ -111,6 +122,15 @@ class Target:
             and self.position_weight == self.orientation_weight == 1.0
         )
 
+    @cached_property
+    def whole_task(self) -> NDArray[np.float64]:
+        """(26,) as the kernels take it, aimed at all that is accepted: up to its tolerances an error counts nothing."""
+        task = self.task.copy()
+        for at, tolerance in enumerate((self.position_tolerance, self.orientation_tolerance)):
+            slack, radius = _whole(tolerance)
+            task[12 + 3 * at : 15 + 3 * at], task[24 + at] = slack, radius
+        return task
+
     @property
     def allowance(self) -> tuple[float, float]:
         """The largest distance (m) and angle (rad) that may still be met; ``inf`` when an axis is free."""
@@ -118,10 +138,14 @@ class Target:
 
     def judge(self, placement: pin.SE3) -> Judgement:
         """How far a world placement is from this target, and whether that is close enough; by Pinocchio."""
+        instance(pin.SE3, placement=placement)
         error = self.pose.actInv(placement)
         position, near = _measure(error.translation.tolist(), self.position_tolerance)
         orientation, aligned = _measure(pin.log3(error.rotation).tolist(), self.orientation_tolerance)
         return Judgement(position, orientation, near and aligned)
+
+
+TargetLike: TypeAlias = Target | pin.SE3 | ArrayLike
 
 
 class Judgement(NamedTuple):
@@ -143,27 +167,61 @@ def _measure(error: list[float], tolerance: Tolerance) -> tuple[float, bool]:
     return size, size <= tolerance
 
 
+def _read(name: str, tolerance: object) -> Read:
+    """A tolerance that somebody gave: a number, or three in a tuple, list or array."""
+    if type(tolerance) is float or type(tolerance) is tuple:
+        try:
+            return _slack(name, tolerance)
+        except TypeError:  # a tuple of what has no hash
+            pass
+    return _slack(name, _as_tolerance(name, tolerance))
+
+
+def _as_tolerance(name: str, tolerance: object) -> Tolerance:
+    """The same as a float or a tuple of three."""
+    try:
+        given = np.asarray(tolerance, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        given = np.empty(0)
+    if given.shape not in ((), (3,)) or not (given > 0.0).all():
+        raise InvalidTarget(f"{name} is a number above 0, or three of them (inf frees an axis), got {tolerance!r}")
+    return float(given) if given.ndim == 0 else (float(given[0]), float(given[1]), float(given[2]))
+
+
 def _radius(tolerance: Tolerance) -> float:
     return math.hypot(*tolerance) if isinstance(tolerance, tuple) else tolerance
 
 
-@cache
+@lru_cache(KEPT)
 def _finite(slack: tuple[float, ...]) -> tuple[bool, ...]:
     return tuple(s < FREE for s in slack)
 
 
-@cache
-def _slack(name: str, tolerance: Tolerance) -> tuple[tuple[float, float, float], float]:
-    """A tolerance as the kernels take it, a little tighter than asked: slack per axis, and radius beyond the slack."""
-    given = tolerance if isinstance(tolerance, tuple) else (tolerance,)
-    if len(given) not in (1, 3) or not all(isinstance(t, (int, float)) and t > 0.0 for t in given):
-        raise InvalidTarget(f"{name} is a number above 0 or a tuple of three (inf frees an axis), got {tolerance!r}")
-    if len(given) == 1:
-        return ((FREE,) * 3, FREE) if given[0] == FREE else ((0.0,) * 3, 0.999 * given[0])
-    return (0.9 * given[0], 0.9 * given[1], 0.9 * given[2]), 0.099 * min(given)
+@lru_cache(KEPT)
+def _slack(name: str, given: Tolerance) -> Read:
+    """A tolerance; as the kernels take it, a little tighter, slack per axis and radius beyond it; and if it is loose.
+
+    One number is aimed at in the middle, where an answer is best; see ``_whole`` for when there is none.
+    """
+    tolerance = _as_tolerance(name, given)
+    each = tolerance if isinstance(tolerance, tuple) else (tolerance,)
+    loose = any(DEFAULT_TOLERANCE < t < FREE for t in each)
+    if isinstance(tolerance, tuple):
+        return tolerance, (0.9 * tolerance[0], 0.9 * tolerance[1], 0.9 * tolerance[2]), 0.099 * min(tolerance), loose
+    if tolerance == FREE:
+        return tolerance, (FREE, FREE, FREE), FREE, loose
+    return tolerance, (0.0, 0.0, 0.0), 0.999 * tolerance, loose
+
+
+@lru_cache(KEPT)
+def _whole(tolerance: Tolerance) -> tuple[tuple[float, float, float], float]:
+    """The same of all that is accepted: a box for three numbers, a ball (minus its radius, thrice) for one."""
+    if isinstance(tolerance, tuple):
+        return (WHOLE * tolerance[0], WHOLE * tolerance[1], WHOLE * tolerance[2]), EDGE * min(tolerance)
+    return ((FREE,) * 3, FREE) if tolerance == FREE else ((-WHOLE * tolerance,) * 3, EDGE * tolerance)
 
 
 def _weight(name: str, weight: float) -> float:
-    if not (isinstance(weight, (int, float)) and 0.0 < weight < math.inf):
-        raise InvalidTarget(f"{name} is a finite number above 0, got {weight!r}")
-    return weight
+    if not (isinstance(weight, (int, float, np.integer, np.floating)) and 0.0 < weight <= sys.float_info.max):
+        raise InvalidTarget(f"{name} is a finite number above 0, got {shown(weight)}")
+    return float(weight)

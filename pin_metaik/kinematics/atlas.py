@@ -9,7 +9,7 @@ with all.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -40,6 +40,15 @@ class Atlas:
     x: NDArray[np.float32]
     gains: NDArray[np.float32]
     scale: float
+
+    def moved(self, moves: NDArray[np.float64]) -> Atlas:
+        """The same samples with the poses of each tip moved as a whole by moves (T, 4, 4); gains are in tip frames."""
+        leaves = self.leaves.copy()
+        for t, M in enumerate(moves.astype(np.float32)):
+            rows = leaves[:, 9 * t : 9 * t + 9].reshape(len(leaves), 3, 3, LEAF)
+            rows[:] = M[:3, :3] @ rows
+            rows[:, 0] += M[:3, 3:]
+        return replace(self, leaves=leaves)
 
     @property
     def arrays(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32], float]:

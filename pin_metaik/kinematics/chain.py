@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from functools import cached_property
+from functools import cached_property, lru_cache
+from threading import Lock
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -11,18 +12,34 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.errors import FixedFrame
+from pin_metaik.arguments import array, checked, shown
+from pin_metaik.errors import FixedFrame, InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.kinematics.atlas import LEAF, SEED, Atlas, chart
 from pin_metaik.kinematics.closed_form import closed_form
-from pin_metaik.kinematics.model import as_configuration, coordinates_of, entry_limits, frame_id, joint_id, limits_of
-from pin_metaik.kinematics.paths import lay_paths, motion_of
+from pin_metaik.kinematics.limits import Limits
+from pin_metaik.kinematics.model import (
+    HasModel,
+    as_configuration,
+    check_turns,
+    coordinates_of,
+    entries_of,
+    frame_id,
+    joint_id,
+    limits_of,
+    model_of,
+    neutral_inside,
+)
+from pin_metaik.kinematics.paths import Motion, base_moves, lay_paths, leader_of, motion_of
 from pin_metaik.kinematics.placing import Placing, Scratch
 from pin_metaik.kinematics.reach import Reach, reach_of
 from pin_metaik.optimize import Box
+from pin_metaik.optimize.settings import few
 from pin_metaik.randomness import DEFAULT_SEED, as_generator
+from pin_metaik.robots.pickling import reduce_model
 
 LANE = 256  # random starts of the fast lane
-REMEMBERED = 16  # sets of samples kept
+REMEMBERED = 16  # sets of samples kept, and chains whose held joints are elsewhere
+REMADE = 16  # chains kept that came out of pickles
 
 
 class Lane(NamedTuple):
@@ -43,11 +60,14 @@ class Lane(NamedTuple):
     solve_pose: Callable[..., Any]
 
 
+@checked
 class Chain:
     """The joints on the way to one or several frames of a ``pin.Model``, as n coordinates with limits.
 
     A coordinate is a revolute, prismatic or continuous joint; joints that mimic another follow it; everything else is
-    held where ``reference`` has it. The model is only read, never written to.
+    held. What a chain knows of its frames (``paths``, ``poses``, ``reach``, ``atlas``, ``branches``) is true while the
+    held joints are where ``reference`` has them; ``at(q)`` is the same chain with those joints where q has them, and is
+    what every solver works on. The model is only read, never written to.
 
     Attributes:
         model: The model.
@@ -55,6 +75,10 @@ class Chain:
         names: Names of the n joints, one a coordinate.
         limits: Their limits.
         reference: (nq,) the configuration that joints outside the chain are held at.
+        held: Entries of a configuration that place the frames but are no coordinates: those of joints on the way that
+            are locked, or follow a locked one. Mostly there are none.
+        has_lane: Whether the fast lane can take it: it has one frame, and can move.
+        movers: Ids of all joints of the model that move with the coordinates, those that mimic one included.
         paths: The arrays the compiled loops take.
         kernels: The compiled loops.
         tip: Pinocchio's placement of the first frame.
@@ -62,7 +86,7 @@ class Chain:
 
     def __init__(
         self,
-        model: pin.Model,
+        model: pin.Model | HasModel,
         frame: str | Iterable[str],
         *,
         locked: Iterable[str] = (),
@@ -72,28 +96,31 @@ class Chain:
         """Find the joints that move ``frame``.
 
         Args:
-            model: Any Pinocchio model.
+            model: Any Pinocchio model, or a robot that has one: a ``Robot``, or Pinocchio's ``RobotWrapper``.
             frame: A frame's name, or several that are to be placed at once.
-            locked: Joints on the way that shall stay where ``reference`` has them.
-            limits: Ranges (lower, upper) in rad or m that replace the model's, by joint name.
-            reference: (nq,) configuration of the joints that are not moved; default: neutral, inside the limits.
+            locked: Joints on the way that shall stay where they are; of one that mimics another, the other is locked.
+            limits: Ranges (lower, upper) in rad or m that replace the model's, by joint name; those of a joint that
+                mimics one of the chain bind the one it mimics.
+            reference: (nq,) configuration of the joints that are not moved, unless a solver is given ``q0``; also where
+                searches without ``q0`` start, inside the limits. Default: neutral, inside the limits.
 
         Raises:
             FrameNotFound: If the model has no such frame.
             FixedFrame: If no joint is left that moves it.
             UnsupportedJoint: If a joint on the way has several degrees of freedom (lock it), or no single axis.
             UnknownName: If a locked joint does not exist.
-            InvalidBounds: If limits are crossed or NaN.
+            InvalidBounds: If limits are crossed or NaN, or those of joints that move together leave no room.
             InvalidConfiguration: If ``reference`` is not a configuration of the model.
+            InvalidSetting: If ``model`` is no robot, or no frame is named.
         """
-        self._made_from = (model, frame, tuple(locked), dict(limits or {}), reference)
-        self.model = model
+        self.model = model = model_of(model)
+        self._made_from = (model, frame, tuple(locked), dict(limits or {}))
         self.frames = (frame,) if isinstance(frame, str) else tuple(frame)
+        if not self.frames:
+            raise InvalidSetting("name at least one frame for the chain to place, got none")
         self.frame_ids = tuple(frame_id(model, name) for name in self.frames)
-        self._least, self._most = entry_limits(model)
-        self.reference = self.configuration(pin.neutral(model) if reference is None else reference)
 
-        held = {joint_id(model, name) for name in locked}
+        held = {leader_of(model, joint_id(model, name)) for name in locked}
         on_path = {j for f in self.frame_ids for j in list(model.supports[model.frames[f].parentJoint])[1:]}
         motions = {j: motion_of(model, j) for j in sorted(on_path - held)}
         motions = {j: motion for j, motion in motions.items() if motion.driver not in held}
@@ -106,16 +133,79 @@ class Chain:
 
         self.names = tuple(model.names[j] for j in drivers)
         self.coordinates = coordinates_of(model, drivers)
-        mimicked = {motion.driver for motion in motions.values() if motion.scale != 1.0}
-        self.limits = limits_of(model, drivers, self.names, mimicked).replace(dict(limits or {}))
+        self.movers = frozenset(j for j in range(1, model.njoints) if leader_of(model, j) in drivers)
+        self.limits = self._limits(motions, drivers, dict(limits or {}))
+        self._held_joints = sorted({leader_of(model, j) for j in on_path - motions.keys()})
+        self._held = entries_of(model, self._held_joints)
+        self.held = tuple(self._held.tolist())
+        self._motions, self._columns = motions, {j: c for c, j in enumerate(drivers)}
         plain, entries = self.coordinates.plain, self.coordinates.plain_q
+        self._least, self._most = np.full(model.nq, -np.inf), np.full(model.nq, np.inf)
         self._least[entries], self._most[entries] = self.limits.lower[plain], self.limits.upper[plain]
-        self.paths = lay_paths(model, self.frame_ids, {j: c for c, j in enumerate(drivers)}, motions, self.reference)
+        self.has_lane = len(self.frames) == 1 and not self.limits.rigid
         self.kernels = _kernels()
         self._own = Scratch(model)
         self.tip = Placing(model, self.frame_ids[0])
         self._samples: dict[tuple[int, tuple[int, ...]], NDArray[np.float64]] = {}
+        self._original, self._elsewhere, self._lock = self, dict[bytes, Chain](), Lock()
+        self._hold(self.configuration(neutral_inside(model) if reference is None else reference))
+
+    def _limits(self, motions: dict[int, Motion], drivers: list[int], given: dict[str, tuple[float, float]]) -> Limits:
+        """Limits of the coordinates, with those that somebody gave for them or for joints that follow them."""
+        model = self.model
+        followers = self.movers.difference(drivers)
+        alike = {j for j in followers if j in motions and motions[j].rotates and motions[j].scale == 1.0}
+        mimicked = {leader_of(model, j) for j in followers - alike}
+        own = {name: span for name, span in given.items() if name not in {model.names[j] for j in followers}}
+        limits = limits_of(model, drivers, self.names, mimicked).replace(own)
+        for j in followers:
+            if model.names[j] in given:
+                mimic = model.joints[j].extract()
+                leader = model.names[leader_of(model, j)]
+                line = float(mimic.scaling), float(mimic.offset)
+                limits = limits.bound(leader, line, model.names[j], given[model.names[j]])
+        return limits
+
+    def _hold(self, reference: NDArray[np.float64]) -> None:
+        """Fold the held joints into the way to the frames, where ``reference`` (nq,) has them."""
+        check_turns(self.model, self._held_joints, reference)
+        self.reference = reference
+        self.paths = lay_paths(self.model, self.data, self.frame_ids, self._columns, self._motions, reference)
+        self._moves = None if self is self._original else base_moves(self._original.paths, self.paths)
         self._reaches: dict[tuple[int, bool], Reach] = {}
+
+    def at(self, q: ArrayLike) -> Chain:
+        """The same chain with its held joints where q (nq,) has them; this one, if they are there already.
+
+        A few of them are kept, and come back when asked for again.
+
+        Raises:
+            InvalidConfiguration: If q is not a configuration of the model.
+        """
+        if not self.held:
+            return self
+        entries = as_configuration(self.model, q)[self._held]
+        for chain in (self, self._original):
+            if np.array_equal(entries, chain.reference[self._held]):
+                return chain
+        key = entries.tobytes()
+        with self._lock:
+            kept = self._elsewhere
+            found = kept.pop(key) if key in kept else self._original._moved(entries)
+            kept[key] = found  # the last one used comes last
+            if len(kept) > REMEMBERED:
+                del kept[next(iter(kept))]
+        return found
+
+    def _moved(self, entries: NDArray[np.float64]) -> Chain:
+        """This chain with its held joints at other entries (h,); what depends on them is worked out when asked for."""
+        chain, kind = object.__new__(type(self)), type(self)
+        own = {name for name in vars(self) if not isinstance(getattr(kind, name, None), cached_property)}
+        chain.__dict__ |= {name: vars(self)[name] for name in own}
+        reference = self.reference.copy()
+        reference[self._held] = entries
+        chain._hold(reference)
+        return chain
 
     @property
     def data(self) -> pin.Data:
@@ -123,8 +213,19 @@ class Chain:
         return self._own.data
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Pickle by what the chain was made from."""
-        return _remade, self._made_from
+        """Pickle by what the chain was made from, kilobytes; equal pickles are one chain where they are read.
+
+        Raises:
+            InvalidModel: If the model cannot be pickled; see ``pin_metaik.robots.pickling``.
+        """
+        return _remade, self._recipe
+
+    @cached_property
+    def _recipe(self) -> tuple[object, ...]:
+        """What ``_remade`` takes: plain values, to be compared."""
+        model, _, locked, limits = self._made_from
+        ranges = tuple((name, float(lower), float(upper)) for name, (lower, upper) in limits.items())
+        return *reduce_model(model), self.frames, locked, ranges, tuple(self.reference.tolist())
 
     @property
     def n(self) -> int:
@@ -133,15 +234,15 @@ class Chain:
 
     def q(self, x: ArrayLike, q0: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
         """Configurations (..., nq) at coordinates x (..., n); other joints stay as in ``q0`` (default: reference)."""
-        coordinates = np.asarray(x, dtype=float)
+        coordinates = array("x", x, "...", self.n, error=InvalidConfiguration, finite=False)
         q = np.empty((*coordinates.shape[:-1], self.model.nq))
-        q[...] = self.reference if q0 is None else q0
+        q[...] = self.reference if q0 is None else self._like("q0", q0, q.shape)
         self.coordinates.write(coordinates, q)
         return q
 
     def x(self, q: ArrayLike) -> NDArray[np.float64]:
         """Coordinates (..., n) of configurations q (..., nq); continuous joints as an angle in (-pi, pi]."""
-        return self.coordinates.read(np.asarray(q, dtype=float))
+        return self.coordinates.read(self._like("q", q))
 
     def configuration(self, q: ArrayLike) -> NDArray[np.float64]:
         """A configuration (nq,) somebody gave: checked, and with every joint brought inside its limits.
@@ -149,11 +250,16 @@ class Chain:
         Raises:
             InvalidConfiguration: If its length is not nq or an entry is not finite.
         """
-        return self.inside(as_configuration(self.model, q))
+        return np.minimum(np.maximum(as_configuration(self.model, q), self._least), self._most)
 
     def inside(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
         """The nearest configurations inside the limits to q (..., nq); pairs and quaternions are left alone."""
-        return np.minimum(np.maximum(q, self._least), self._most)
+        return np.minimum(np.maximum(self._like("q", q), self._least), self._most)
+
+    def _like(self, name: str, q: ArrayLike, shape: tuple[int, ...] | None = None) -> NDArray[np.float64]:
+        """Configurations (..., nq) somebody gave; if a shape is asked for, of that, or one (nq,) for all."""
+        given = array(name, q, "...", self.model.nq, error=InvalidConfiguration, finite=False)
+        return given if shape is None or given.ndim == 1 else array(name, given, *shape, error=InvalidConfiguration)
 
     @cached_property
     def box(self) -> Box:
@@ -166,7 +272,12 @@ class Chain:
 
     @cached_property
     def atlas(self) -> Atlas:
-        """Sampled configurations to look a pose up in; made on first use, in about 5 ms, always the same."""
+        """Sampled configurations to look a pose up in; made on first use, in about 5 ms, always the same.
+
+        Where held joints only move the chain as a whole, as those before the first one of it do, its table is moved.
+        """
+        if self._moves is not None:
+            return self._original.atlas.moved(self._moves)
         X = self.limits.one_turn().box().sample(np.random.default_rng(SEED), LEAF * LEAF)
         return chart(X, self.poses(X), self._gains)
 
@@ -180,6 +291,7 @@ class Chain:
 
         Where a joint does not matter, in a singularity, it stays as in x0. Without a closed form there are none.
         """
+        pose, x0 = array("pose", pose, 4, 4, error=InvalidTarget), array("x0", x0, self.n, error=InvalidConfiguration)
         out = np.empty((8, self.n))
         if not len(self.form):
             return out[:0]
@@ -226,7 +338,11 @@ class Chain:
         """Coordinates (count, n) drawn uniformly from the box; one array for a seed, so not to be written to."""
         try:
             return self._samples[count, seed]
-        except KeyError:
+        except (KeyError, TypeError):  # not drawn yet, or no such thing
+            few("count", count, 0)
+            count = int(count)
+            if not isinstance(seed, tuple) or not all(isinstance(one, (int, np.integer)) for one in seed):
+                raise InvalidSetting(f"a seed is a whole number of at least 0, got {shown(seed)}") from None
             if len(self._samples) == REMEMBERED:
                 self._samples.clear()
             self._samples[count, seed] = X = self.box.sample(as_generator(seed), count)
@@ -234,18 +350,32 @@ class Chain:
 
     def reach(self, tip: int, oriented: bool) -> Reach:
         """Bounds on how far tip number ``tip`` gets, for targets with or without a full orientation."""
+        if type(tip) is not int or not 0 <= tip < len(self.frames) or not isinstance(oriented, bool):
+            raise InvalidSetting(f"tip is 0 to {len(self.frames) - 1} and oriented a flag, got {tip!r}, {oriented!r}")
         if (tip, oriented) not in self._reaches:
-            self._reaches[tip, oriented] = reach_of(self.paths, self.limits, tip, oriented)
+            self._reaches[tip, oriented] = (
+                reach_of(self.paths, self.limits, tip, oriented)
+                if self._moves is None
+                else self._original.reach(tip, oriented).moved(self._moves[tip])
+            )
         return self._reaches[tip, oriented]
 
     def placements(self, q: NDArray[np.float64]) -> list[pin.SE3]:
         """World placement of each frame at configuration q (nq,), by Pinocchio."""
+        return self._placed(as_configuration(self.model, q))
+
+    def _placed(self, q: NDArray[np.float64]) -> list[pin.SE3]:
+        """The same, of a configuration that was looked at already."""
         pin.forwardKinematics(self.model, self.data, q)
         return [pin.SE3(pin.updateFramePlacement(self.model, self.data, f)) for f in self.frame_ids]
 
     def poses(self, X: ArrayLike) -> NDArray[np.float64]:
-        """World poses (k, T, 4, 4) of the T frames at the coordinates X (k, n), by the compiled loop."""
-        population = np.ascontiguousarray(np.atleast_2d(np.asarray(X, dtype=float)))
+        """World poses (k, T, 4, 4) of the T frames at the coordinates X (k, n), by the compiled loop.
+
+        Held joints are where ``reference`` has them; for others ask ``chain.at(q0).poses(X)``.
+        """
+        population = np.atleast_2d(array("X", X, "...", self.n, error=InvalidConfiguration, finite=False))
+        population = population.reshape(-1, self.n)
         flat = np.empty((len(population), len(self.frames), 12))
         self.kernels.poses(*self.paths.arrays, population, flat)
         poses = np.zeros((*flat.shape[:2], 4, 4))
@@ -258,14 +388,18 @@ class Chain:
         return f"Chain({self.model.name}: {', '.join(self.frames)}; {self.n} joints: {', '.join(self.names)})"
 
 
+@lru_cache(maxsize=REMADE)
 def _remade(
-    model: pin.Model,
-    frame: str | Iterable[str],
+    make: Callable[..., pin.Model],
+    parts: tuple[Any, ...],
+    frames: tuple[str, ...],
     locked: tuple[str, ...],
-    limits: dict[str, tuple[float, float]],
-    reference: ArrayLike | None,
+    limits: tuple[tuple[str, float, float], ...],
+    reference: tuple[float, ...],
 ) -> Chain:
-    return Chain(model, frame, locked=locked, limits=limits, reference=reference)
+    """A chain from its pickle. The last few are kept: a thousand results, or calls of a worker, share one."""
+    ranges = {name: (lower, upper) for name, lower, upper in limits}
+    return Chain(make(*parts), frames, locked=locked, limits=ranges, reference=reference)
 
 
 def _kernels() -> ModuleType:

@@ -17,7 +17,7 @@ from typing import TypeAlias
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, allocating, inline, shared
-from pin_metaik.kinematics.kernels import copy, forward, jacobian, pose_error, residual
+from pin_metaik.kinematics.kernels import beyond_ball, copy, forward, jacobian, pose_error, residual
 
 PATIENCE = 4  # steps that must bring the squared error below `progress`, or the start is given up
 DAMPING_FLOOR = 1e-9  # what is left of the damping at a solution
@@ -39,11 +39,17 @@ def workspace(n: int, rows: Ints | None, S: int) -> Work:
 
 
 @inline
-def evaluate(arm: Arm, tasks: Floats, rows: Ints, x: Floats, work: Work) -> tuple[float, bool]:
-    """Residual r (m,) and Jacobian by coordinate J (n, m) of several tips, or of one with free axes or slack.
+def have_balls(tasks: Floats) -> bool:
+    """Whether a tolerance is aimed at as a ball."""
+    found = False
+    for t in range(tasks.shape[0]):
+        found = found or tasks[t, 12] < 0.0 or tasks[t, 15] < 0.0
+    return found
 
-    Returns |r|^2 and whether every tip is in tolerance.
-    """
+
+@inline
+def evaluate_with(arm: Arm, tasks: Floats, rows: Ints, x: Floats, work: Work, balls: bool) -> tuple[float, bool]:
+    """``evaluate``; ``balls`` is a constant, so that what has none does not pay for them."""
     joints, wiring, ends, tips = arm
     axes, origins, pose, error, r6, J6, r, J, _, _, _, _, _ = work
     m = 0
@@ -54,19 +60,38 @@ def evaluate(arm: Arm, tasks: Floats, rows: Ints, x: Floats, work: Work) -> tupl
         forward(joints, wiring, ends[t], ends[t + 1], tips[t], task[:12], x, axes, origins, pose)
         pose_error(pose, error)
         position, orientation = residual(task, error, r6)
-        solved = solved and position <= task[24] * task[24] and orientation <= task[25] * task[25]
         J6[:, :] = 0.0
-        rotated = task[15] > 0.0 or task[16] > 0.0 or task[17] > 0.0
+        rotated = task[15] > 0.0 or task[16] > 0.0 or task[17] > 0.0 or (balls and task[15] < 0.0)
         jacobian(joints, wiring, ends[t], ends[t + 1], task, pose, axes, origins, error, rotated, J6)
+        if balls and task[12] < 0.0:
+            position = beyond_ball(task, error, 0, r6, J6)
+        if balls and task[15] < 0.0:
+            orientation = beyond_ball(task, error, 3, r6, J6)
+        solved = solved and position <= task[24] * task[24] and orientation <= task[25] * task[25]
         while m < rows.shape[0] and rows[m, 0] == t:
             j = rows[m, 1]
             r[m] = r6[j]
             square += r6[j] * r6[j]
-            counts = r6[j] != 0.0 or task[12 + j] == 0.0
+            counts = r6[j] != 0.0 or task[12 + j] == 0.0 or (balls and task[12 + j] < 0.0)
             for c in range(J6.shape[0]):
                 J[c, m] = J6[c, j] if counts else 0.0
             m += 1
     return square, solved
+
+
+@shared
+def evaluate_balls(arm: Arm, tasks: Floats, rows: Ints, x: Floats, work: Work) -> tuple[float, bool]:
+    """``evaluate`` where a tolerance is aimed at as a ball."""
+    return evaluate_with(arm, tasks, rows, x, work, True)
+
+
+@inline
+def evaluate(arm: Arm, tasks: Floats, rows: Ints, x: Floats, work: Work, balls: bool) -> tuple[float, bool]:
+    """Residual r (m,) and Jacobian by coordinate J (n, m) of several tips, or of one with free axes, slack or balls.
+
+    Returns |r|^2 and whether every tip is in tolerance.
+    """
+    return evaluate_balls(arm, tasks, rows, x, work) if balls else evaluate_with(arm, tasks, rows, x, work, False)
 
 
 @inline
@@ -190,6 +215,7 @@ def descend_from(
     damping, progress, steps = settings
     for c in range(x.shape[0]):
         x[c] = min(max(start[c], lower[c]), upper[c])
+    balls = have_balls(tasks)
     mark = np.inf
     found = False
     polish = POLISH
@@ -197,7 +223,7 @@ def descend_from(
         if rows is None:
             square, solved = evaluate_pose(arm, tasks[0], x, work)
         else:
-            square, solved = evaluate(arm, tasks, rows, x, work)
+            square, solved = evaluate(arm, tasks, rows, x, work, balls)
         if found and not (solved and square < 0.01 * least):
             return i + 1, True, least
         if square < least or solved:

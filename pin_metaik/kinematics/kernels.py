@@ -11,6 +11,7 @@ Arrays every kernel takes (made by ``Chain`` and ``IKProblem``; S joints on all 
 * ``ends`` (T + 1,): joints ``ends[t]:ends[t + 1]`` lead from the world to tip t; paths may share columns.
 * ``tips`` (T, 12): placement of each tip in its last joint frame.
 * ``tasks`` (T, 26): the world in the target frame (12), slack per axis (6), weight per axis (6), tolerances (m, rad).
+  Where the slack of position or of orientation is below 0, it is minus the radius of a ball for the three axes at once.
 * ``rows`` (m, 2): which (tip, axis) pairs count: slack finite.
 
 Seen from the target frame, a solved tip stands at the identity: position error p, orientation error log(R), and no
@@ -164,6 +165,28 @@ def residual(task: Floats, error: Floats, r: Floats) -> tuple[float, float]:
 
 
 @shared
+def beyond_ball(task: Floats, error: Floats, part: int, r: Floats, J: Floats) -> float:
+    """Weighted position (part 0) or orientation (part 3) beyond its ball, into r (6,); returns its size, squared.
+
+    J (n, 6), the Jacobian of the error, becomes that of what is beyond: along the ball it shrinks by as much.
+    """
+    x, y, z = error[part], error[part + 1], error[part + 2]
+    square = x * x + y * y + z * z
+    size = math.sqrt(square)
+    outside = max(size + task[12 + part], 0.0)
+    scale = outside / size if outside > 0.0 else 0.0
+    for j in range(part, part + 3):
+        r[j] = scale * task[18 + j] * error[j]
+    for c in range(J.shape[0]):
+        outward = 0.0
+        if outside > 0.0:
+            outward = (1.0 - scale) * (x * J[c, part] + y * J[c, part + 1] + z * J[c, part + 2]) / square
+        for j in range(part, part + 3):
+            J[c, j] = scale * J[c, j] + outward * error[j]
+    return float(outside * outside)
+
+
+@shared
 def jacobian(
     joints: Floats,
     wiring: Ints,
@@ -229,6 +252,7 @@ def costs(joints: Floats, wiring: Ints, ends: Ints, tips: Floats, tasks: Floats,
     """Cost (k,) of a population X (k, n): weighted distance in m plus weighted angle in rad, summed over the tips."""
     S = joints.shape[0]
     axes, origins, pose, error, r = np.empty((S, 3)), np.empty((S, 3)), np.empty(12), np.empty(6), np.empty(6)
+    no_jacobian = np.empty((0, 6))
     for k in range(X.shape[0]):
         total = 0.0
         for t in range(tips.shape[0]):
@@ -236,5 +260,9 @@ def costs(joints: Floats, wiring: Ints, ends: Ints, tips: Floats, tasks: Floats,
             forward(joints, wiring, ends[t], ends[t + 1], tips[t], task[:12], X[k], axes, origins, pose)
             pose_error(pose, error)
             residual(task, error, r)
+            if task[12] < 0.0:
+                beyond_ball(task, error, 0, r, no_jacobian)
+            if task[15] < 0.0:
+                beyond_ball(task, error, 3, r, no_jacobian)
             total += math.sqrt(r[0] ** 2 + r[1] ** 2 + r[2] ** 2) + math.sqrt(r[3] ** 2 + r[4] ** 2 + r[5] ** 2)
         out[k] = total

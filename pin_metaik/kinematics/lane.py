@@ -8,6 +8,7 @@ import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit
 from pin_metaik.kinematics.branches import Vector
+from pin_metaik.kinematics.closed_form import BRANCHLESS
 from pin_metaik.kinematics.descent import Work, descend_from, workspace
 from pin_metaik.kinematics.desk import (
     NOWHERE,
@@ -30,6 +31,19 @@ POSITION = np.array([[0, 0], [0, 1], [0, 2]])  # the rows that count where orien
 
 
 @inline
+def misshape(task: Floats) -> float:
+    """By how much (relative) the rotation of a target may stretch a vector: |R R' - I|."""
+    square = 0.0
+    for i in range(3):
+        for j in range(3):
+            dot = -1.0 if i == j else 0.0
+            for k in range(3):
+                dot += task[3 * i + k] * task[3 * j + k]
+            square += dot * dot
+    return math.sqrt(square)
+
+
+@inline
 def out_of_reach(task: Floats, reach: Floats) -> bool:
     """Whether every pose in the tolerances is proved to be farther away, or nearer, than the links can span."""
     square = lever = 0.0
@@ -41,6 +55,9 @@ def out_of_reach(task: Floats, reach: Floats) -> bool:
         lever += reach[3 + i] * reach[3 + i]
     distance = math.sqrt(square)
     allowed = ROUNDING + task[24] + (math.sqrt(lever) * task[25] if lever > 0.0 else 0.0)
+    if reach[6] - 1.01 * allowed <= distance <= reach[7] + 1.01 * allowed:
+        return False
+    allowed += math.sqrt(lever) * misshape(task)
     return bool(distance > reach[7] + 1.01 * allowed or distance < reach[6] - 1.01 * allowed)
 
 
@@ -74,11 +91,13 @@ def go_on(
     looks: Looks,
 ) -> int:
     """Descend from the branch that ``begin`` found, if it did, then ``search``; returns all evaluations."""
-    arm, bounds, entries, _, _ = unpack(block)
+    arm, bounds, entries, _, form = unpack(block)
     task, guess, start, best, _ = laid_out(desk, bounds[0].shape[0])
     tasks = task.reshape(1, 26)
     descent, most = (settings[0], settings[1], int(settings[2])), int(settings[3])
     (spent, todo), met = begun, False
+    if todo == SEARCH and rows is None and form.shape[0] > 0:
+        most = min(most, BRANCHLESS)
     if todo == DESCEND:
         steps, met, _ = descend_from(arm, tasks, rows, bounds, start, descent, most, np.inf, best, work)
         spent += steps

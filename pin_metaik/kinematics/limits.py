@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, checked_as, number
 from pin_metaik.errors import InvalidBounds
 from pin_metaik.optimize import Box
 
@@ -16,6 +17,7 @@ UNBOUNDED = 1e300
 """Pinocchio writes "no limit" as the largest float; anything beyond this is infinite."""
 
 
+@checked_as(InvalidBounds)
 @dataclass(frozen=True, eq=False)
 class Limits:
     """Lower and upper limits of n joint coordinates.
@@ -42,6 +44,11 @@ class Limits:
         Raises:
             InvalidBounds: If a limit is NaN or a lower limit is above its upper one; the joint is named.
         """
+        for name in ("lower", "upper", "velocity", "rotates", "winds"):
+            if (given := getattr(self, name)).shape != (len(self.names),):
+                raise InvalidBounds(
+                    f"{name} has an entry for each of {len(self.names)} joints, got shape {given.shape}"
+                )
         for name, lower, upper in zip(self.names, self.lower, self.upper, strict=True):
             if np.isnan(lower) or np.isnan(upper):
                 raise InvalidBounds(f"joint {name!r} has limits [{lower}, {upper}]: NaN is not a limit")
@@ -56,6 +63,16 @@ class Limits:
     def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
         """Lower, upper and winds as every search takes them."""
         return self.lower, self.upper, self.winds.astype(np.int64)
+
+    @cached_property
+    def stuck(self) -> tuple[str, ...]:
+        """Names of the joints whose limits are equal: they cannot move."""
+        return tuple(name for name, (low, high) in zip(self.names, self._pairs, strict=True) if low == high)
+
+    @property
+    def rigid(self) -> bool:
+        """Whether no joint can move."""
+        return len(self.stuck) == len(self.names)
 
     @property
     def periodic(self) -> NDArray[np.bool_]:
@@ -92,11 +109,12 @@ class Limits:
 
     def clip(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """The nearest coordinates inside the limits; periodic ones are left as they are."""
-        return np.minimum(np.maximum(x, self.lower), self.upper)
+        return np.minimum(np.maximum(self._given("x", x), self.lower), self.upper)
 
     def nearest_turns(self, x: NDArray[np.float64], x0: NDArray[np.float64]) -> NDArray[np.float64]:
         """Coordinates x (..., n), each winding angle moved by whole turns to be nearest to x0 inside its limits."""
         turn = 2.0 * np.pi
+        x, x0 = self._given("x", x), array("x0", x0, len(self.names), finite=False)
         turns = np.round((x0 - x) / turn)
         turns = np.minimum(np.maximum(turns, np.ceil((self.lower - x) / turn)), np.floor((self.upper - x) / turn))
         return np.where(self.winds, self.clip(x + turn * turns), x)
@@ -104,10 +122,18 @@ class Limits:
     def contains(self, x: NDArray[np.float64], tolerance: float = 0.0) -> bool:
         """Whether every coordinate is inside its limits, up to ``tolerance`` (rad or m)."""
         # Plain floats: on a handful of numbers three times quicker than numpy's reductions.
+        x = array("x", x, len(self.names), finite=False)
+        if type(tolerance) is not float:
+            tolerance = number("tolerance", tolerance)
         return all(
             low - tolerance <= v <= high + tolerance for (low, high), v in zip(self._pairs, x.tolist(), strict=True)
         )
 
+    def _given(self, name: str, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Coordinates (..., n) somebody gave."""
+        return array(name, x, "...", len(self.names), finite=False)
+
+    @checked_as(InvalidBounds)
     def replace(self, limits: dict[str, tuple[float, float]]) -> Limits:
         """The same limits with some joints' ranges replaced, e.g. ``{"joint_2": (-1.0, 1.0)}``.
 
@@ -124,6 +150,32 @@ class Limits:
             lower[i], upper[i] = _pair(name, span)
         winds = self.winds & (upper - lower >= 2.0 * np.pi)
         return Limits(lower, upper, self.velocity, self.rotates, winds, self.names)
+
+    def bound(self, leader: str, line: tuple[float, float], follower: str, span: tuple[float, float]) -> Limits:
+        """The same limits where a joint that follows one of these, at scale x + shift, keeps to a range of its own.
+
+        Args:
+            leader: The joint of these limits that is followed.
+            line: Scale and shift (rad or m).
+            follower: The joint that follows.
+            span: Its range, rad or m.
+
+        Raises:
+            InvalidBounds: If the range is crossed or NaN, or leaves the leader no room.
+        """
+        scale, shift = line
+        low, high = _pair(follower, span)
+        if not low <= high:
+            raise InvalidBounds(f"joint {follower!r} has its lower limit {low} above its upper limit {high}")
+        i = self.names.index(leader)
+        ends = sorted(((low - shift) / scale, (high - shift) / scale)) if scale else [-np.inf, np.inf]
+        least, most = max(ends[0], self.lower[i]), min(ends[1], self.upper[i])
+        if least > most or not (scale or low <= shift <= high):
+            raise InvalidBounds(
+                f"joint {follower!r} is at {scale:g} {leader!r} + {shift:g}: its limits [{low:g}, {high:g}] leave no "
+                f"room to {leader!r}, whose own are [{self.lower[i]:g}, {self.upper[i]:g}]"
+            )
+        return self.replace({leader: (least, most)})
 
 
 def finite_or_infinite(values: ArrayLike) -> NDArray[np.float64]:

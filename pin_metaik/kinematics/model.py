@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+from typing import Any, Protocol
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.errors import FrameNotFound, InvalidConfiguration, UnknownName
+from pin_metaik.arguments import array, shown
+from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSetting, UnknownName
 from pin_metaik.kinematics.coordinates import Coordinates, consecutive
 from pin_metaik.kinematics.limits import Limits, finite_or_infinite
 from pin_metaik.kinematics.paths import motion_of
+
+UNIT = 1e-6  # by how much the length of a quaternion may differ from 1
 
 
 def as_configuration(model: pin.Model, q: ArrayLike) -> NDArray[np.float64]:
@@ -20,27 +24,65 @@ def as_configuration(model: pin.Model, q: ArrayLike) -> NDArray[np.float64]:
     Raises:
         InvalidConfiguration: If its length is not nq or an entry is not finite.
     """
-    try:
-        configuration = np.asarray(q, dtype=float)
-    except (TypeError, ValueError):
-        raise InvalidConfiguration(f"a configuration is {model.nq} numbers, got {q!r}") from None
-    if configuration.shape != (model.nq,):
-        raise InvalidConfiguration(
-            f"a configuration of {model.name!r} has shape ({model.nq},), got {configuration.shape}"
+    given: Any = q
+    if type(q) is np.ndarray and q.dtype.char == "d" and q.shape == (model.nq,) and math.isfinite(np.add.reduce(q)):
+        return given  # type: ignore[no-any-return]  # what worlds ask for thousands of times
+    return array(f"a configuration of {model.name!r}", q, model.nq, error=InvalidConfiguration)
+
+
+class HasModel(Protocol):
+    """A robot that has a model: a ``Robot``, Pinocchio's ``RobotWrapper``, or an object of your own."""
+
+    @property
+    def model(self) -> pin.Model:
+        """Its model."""
+        ...
+
+
+def model_of(robot: pin.Model | HasModel) -> pin.Model:
+    """A model, or that of a robot.
+
+    Raises:
+        InvalidSetting: Neither a model nor a robot that has one.
+    """
+    model = robot if isinstance(robot, pin.Model) else getattr(robot, "model", None)
+    if not isinstance(model, pin.Model):
+        advice = f"; mik.load_robot({robot!r}) loads one" if isinstance(robot, str) else ""
+        raise InvalidSetting(
+            f"model is a robot, e.g. mik.load_robot('panda'), or its pin.Model, got {shown(robot)}{advice}"
         )
-    if not math.isfinite(np.add.reduce(configuration)):
-        raise InvalidConfiguration(f"a configuration has finite entries, got {configuration}")
-    return configuration
+    return model
 
 
-def entry_limits(model: pin.Model) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Limits (nq,) of the entries of q that are a joint's coordinate; pairs and quaternions have none."""
-    least, most = np.full(model.nq, -np.inf), np.full(model.nq, np.inf)
-    for joint in list(model.joints)[1:]:
-        if joint.nq == 1:
-            least[joint.idx_q] = model.lowerPositionLimit[joint.idx_q]
-            most[joint.idx_q] = model.upperPositionLimit[joint.idx_q]
-    return least, most
+def neutral_inside(model: pin.Model) -> NDArray[np.float64]:
+    """The neutral configuration (nq,), each joint with one coordinate brought inside its limits."""
+    q: NDArray[np.float64] = pin.neutral(model)
+    single = [joint.idx_q for joint in list(model.joints)[1:] if joint.nq == 1]
+    q[single] = np.minimum(np.maximum(q[single], model.lowerPositionLimit[single]), model.upperPositionLimit[single])
+    return q
+
+
+def entries_of(model: pin.Model, joints: list[int]) -> NDArray[np.int64]:
+    """Where in a configuration joints given by id are, in order."""
+    kinds = [model.joints[j] for j in joints]
+    return np.array([e for kind in kinds for e in range(kind.idx_q, kind.idx_q + kind.nq)], dtype=np.int64)
+
+
+def check_turns(model: pin.Model, joints: list[int], q: NDArray[np.float64]) -> None:
+    """Refuse a configuration q (nq,) with a quaternion, or a cosine and sine, of a joint that is not of length 1.
+
+    Raises:
+        InvalidConfiguration: If so; the joint is named.
+    """
+    for j in joints:
+        entries = entries_of(model, [j])
+        alone = pin.neutral(model)
+        alone[entries] = q[entries]
+        if not pin.isNormalized(model, alone, UNIT):
+            raise InvalidConfiguration(
+                f"joint {model.names[j]!r} is at {q[entries]}: its quaternion, or cosine and sine, has not length 1; "
+                "pin.normalize(model, q) makes it so"
+            )
 
 
 def frame_id(model: pin.Model, name: str) -> int:

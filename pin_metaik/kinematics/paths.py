@@ -11,6 +11,10 @@ from numpy.typing import NDArray
 
 from pin_metaik.errors import UnsupportedJoint
 
+UP = np.array([0.0, 0.0, 1.0])
+HALF_ABOUT_X = np.array([1.0, -1.0, -1.0])  # multiplied into the columns
+RIGID = 1e-12  # of R'R, by how much a rotation of double precision may miss the identity
+
 
 @dataclass(frozen=True, eq=False)
 class Paths:
@@ -44,6 +48,15 @@ class Motion:
     shift: float
 
 
+def leader_of(model: pin.Model, joint: int) -> int:
+    """Id of the joint that a joint mimics, or its own."""
+    kind = model.joints[joint]
+    if kind.nq:
+        return joint
+    # A mimic joint is a scaled copy of the coordinate at the same index.
+    return next(j for j in range(1, model.njoints) if model.joints[j].nv and model.joints[j].idx_v == kind.idx_v)
+
+
 def motion_of(model: pin.Model, joint: int) -> Motion:
     """Axis and kind of a joint with one degree of freedom, read from its motion subspace S.
 
@@ -51,15 +64,15 @@ def motion_of(model: pin.Model, joint: int) -> Motion:
         UnsupportedJoint: If it has more than one degree of freedom, or turns and slides at once.
     """
     kind = model.joints[joint]
-    driver, scale, shift = joint, 1.0, 0.0
-    if kind.nq == 0:  # a mimic joint is a scaled copy of the coordinate at the same index
-        driver = next(j for j in range(1, model.njoints) if model.joints[j].nv and model.joints[j].idx_v == kind.idx_v)
+    driver, scale, shift = leader_of(model, joint), 1.0, 0.0
+    if driver != joint:
         mimic = kind.extract()
         scale, shift = float(mimic.scaling), float(mimic.offset)
     elif kind.nv != 1:
         raise UnsupportedJoint(
             f"joint {model.names[joint]!r} on the path has {kind.nv} degrees of freedom; chains move joints with one: "
-            f"hold it where the reference has it: Chain(..., locked=[{model.names[joint]!r}])"
+            f"hold it where the reference has it: Chain(..., locked=[{model.names[joint]!r}]) "
+            f"or --lock {model.names[joint]}"
         )
     subspace = _constant_subspace(model, joint)
     linear, angular = subspace[:3], subspace[3:]
@@ -87,8 +100,14 @@ def _constant_subspace(model: pin.Model, joint: int) -> NDArray[np.float64]:
 
 
 def turned_to_z(axis: NDArray[np.float64]) -> pin.SE3:
-    """The rotation whose z axis is ``axis`` (3,), by the shortest turn."""
-    return pin.SE3(pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), axis).matrix(), np.zeros(3))
+    """A rotation whose z axis is ``axis`` (3,), exact but for rounding.
+
+    It is the shortest turn from z, or, for an axis that points down, from -z after half a turn about x: a turn by more
+    than a right angle, made from the two vectors, would lose digits, near -z half of them.
+    """
+    down = bool(axis[2] < 0.0)
+    turn = pin.Quaternion.FromTwoVectors(UP, -axis if down else axis).matrix()
+    return pin.SE3(turn * HALF_ABOUT_X if down else turn, np.zeros(3))
 
 
 def flat(placement: pin.SE3) -> NDArray[np.float64]:
@@ -104,15 +123,30 @@ def matrix_of(flat: NDArray[np.float64]) -> NDArray[np.float64]:
     return matrix
 
 
+def base_moves(before: Paths, after: Paths) -> NDArray[np.float64] | None:
+    """How each tip's path is moved as a whole, (T, 4, 4), if the two differ in nothing but where the paths begin.
+
+    None if they differ in more, or are moved by what is not quite a rotation.
+    """
+    first = before.ends[:-1]
+    rest = np.delete(before.joints, first, axis=0), np.delete(after.joints, first, axis=0)
+    if not (np.array_equal(*rest) and np.array_equal(before.tips, after.tips)):
+        return None
+    ways = zip(before.joints[first], after.joints[first], strict=True)
+    moves = np.array([matrix_of(there) @ np.linalg.inv(matrix_of(here)) for here, there in ways])
+    turns = moves[:, :3, :3]
+    return moves if np.abs(turns.transpose(0, 2, 1) @ turns - np.eye(3)).max() < RIGID else None
+
+
 def lay_paths(
     model: pin.Model,
+    data: pin.Data,
     frames: Sequence[int],
     columns: dict[int, int],
     motions: dict[int, Motion],
     reference: NDArray[np.float64],
 ) -> Paths:
     """Walk from the world to each frame; joints without a column are folded in where ``reference`` (nq,) has them."""
-    data = model.createData()
     pin.forwardKinematics(model, data, reference)
     joints, wiring, ends, tips = [], [], [0], []
     for frame in frames:

@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array
 from pin_metaik.errors import InvalidTarget
 
 ORTHONORMAL = 1e-6
@@ -48,12 +49,7 @@ def as_pose(pose: pin.SE3 | ArrayLike) -> Pose:
 
 
 def _from_matrix(pose: ArrayLike) -> pin.SE3:
-    try:
-        matrix = np.array(pose, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InvalidTarget(f"a pose is a pin.SE3 or a 4x4 matrix, got {type(pose).__name__}") from None
-    if matrix.shape != (4, 4):
-        raise InvalidTarget(f"a pose is a pin.SE3 or a 4x4 matrix, got shape {matrix.shape}")
+    matrix = array("a pose, a pin.SE3 or a 4x4 matrix,", pose, 4, 4, error=InvalidTarget)
     if matrix[3].tolist() != [0.0, 0.0, 0.0, 1.0]:
         raise InvalidTarget(f"the last row of a pose is 0 0 0 1, got {matrix[3]}")
     return pin.SE3(matrix[:3, :3], matrix[:3, 3])
@@ -73,15 +69,7 @@ def as_position(xyz: ArrayLike) -> NDArray[np.float64]:
     Raises:
         InvalidTarget: If it is not three finite numbers.
     """
-    try:
-        vector = np.array(xyz, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InvalidTarget(f"a position is three numbers in metres, got {xyz!r}") from None
-    if vector.shape != (3,):
-        raise InvalidTarget(f"a position has shape (3,), got {vector.shape}")
-    if not np.isfinite(vector).all():
-        raise InvalidTarget(f"a position has finite entries, got {vector}")
-    return vector
+    return array("a position in metres", xyz, 3, error=InvalidTarget).copy()
 
 
 def rpy_matrix(roll: float, pitch: float, yaw: float) -> NDArray[np.float64]:

@@ -5,6 +5,9 @@ Between knots the chain is a polygon of links whose lengths are known, and no po
 links, or less than its longest link less all the others. Where the knots are put on their axes is free: they are put
 where the sum is least. With the whole pose given, the last knot is known too, and the last link drops out: for an arm
 with a spherical wrist this is the distance of the wrist from the shoulder.
+
+That holds in real numbers, of rotations that are orthonormal. What digits and placements that are not quite rotations
+may change is added to the bounds, so that they stay a proof: see ``_doubt`` and ``misshape``.
 """
 
 from __future__ import annotations
@@ -18,7 +21,8 @@ from numpy.typing import NDArray
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.paths import Paths, matrix_of
 
-ROUNDING = 1e-9  # m, of a bound that is exact in real numbers
+ROUNDING = 1e-9  # m, of a target and of what is compared with it
+DIGITS = 64.0 * float(np.finfo(float).eps)  # of a sum of a few products, for each joint
 SWEEPS = 50
 
 
@@ -47,6 +51,12 @@ class Reach:
     least: float
     most: float
 
+    def moved(self, move: NDArray[np.float64]) -> Reach:
+        """The same bounds for a chain moved as a whole by (4, 4)."""
+        anchor = move[:3, :3] @ self.anchor + move[:3, 3]
+        doubt = DIGITS * float(np.linalg.norm(anchor))
+        return Reach(anchor, self.end, max(0.0, self.least - doubt), self.most + doubt)
+
     @property
     def array(self) -> NDArray[np.float64]:
         """(8,) all of it, as the fast lane takes it."""
@@ -62,23 +72,37 @@ class Reach:
         """
         span = float(np.linalg.norm(pose.act(self.end) - self.anchor))
         lever = float(np.linalg.norm(self.end))
-        allowed = ROUNDING + distance + (lever * angle if lever else 0.0)
+        allowed = ROUNDING + distance + (lever * (angle + misshape(pose.rotation)) if lever else 0.0)
         return max(0.0, span - self.most - allowed, self.least - span - allowed)
+
+
+def misshape(rotation: NDArray[np.float64]) -> float:
+    """By how much (relative) a rotation (3, 3) may stretch a vector: |R'R - I|."""
+    return float(np.linalg.norm(rotation.T @ rotation - np.eye(3)))
 
 
 def reach_of(paths: Paths, limits: Limits, tip: int, oriented: bool) -> Reach:
     """Bounds for one tip; ``oriented`` says that targets fix all of the orientation, not only the position."""
     links, last, closing = _links(paths, limits, tip)
     if not links:  # nothing turns: a gantry
-        return Reach(last.offset, np.zeros(3), 0.0, last.slack)
+        return Reach(last.offset, np.zeros(3), 0.0, last.slack + _doubt(paths, tip, [last], np.zeros(1)))
     # Knot i is on axis i; link 0 only places the first axis in the world.
     spanning = links[1:] if oriented else [*links[1:], last]
     knots, spans = _tightened(spanning, len(links))
     slack = links[0].slack + last.slack + sum(link.slack for link in links[1:])
+    slack += _doubt(paths, tip, [*links, last], knots)
     most = float(spans.sum()) + slack
     least = max(0.0, 2.0 * float(spans.max(initial=0.0)) - float(spans.sum()) - slack)
     end = closing[:3, :3].T @ (np.array([0.0, 0.0, knots[-1]]) - closing[:3, 3]) if oriented else np.zeros(3)
     return Reach(links[0].offset + knots[0] * links[0].axis, end, least, most)
+
+
+def _doubt(paths: Paths, tip: int, links: list[Link], knots: NDArray[np.float64]) -> float:
+    """By how much (m) rounding, and placements that are not quite rotations, may change the sum of the links."""
+    size = 2.0 * float(np.abs(knots).sum()) + sum(float(np.linalg.norm(link.offset)) + link.slack for link in links)
+    rows = [*paths.joints[paths.ends[tip] : paths.ends[tip + 1]], paths.tips[tip]]
+    stretch = sum(misshape(matrix_of(row)[:3, :3]) for row in rows)
+    return size * (DIGITS * len(rows) + stretch)
 
 
 def _tightened(links: list[Link], count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

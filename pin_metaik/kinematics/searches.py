@@ -6,7 +6,7 @@ import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, Singles, inline, jit, shared
 from pin_metaik.kinematics.atlas import LEAF
-from pin_metaik.kinematics.descent import Arm, Bounds, Settings, Work, descend_from, evaluate, workspace
+from pin_metaik.kinematics.descent import Arm, Bounds, Settings, Work, descend_from, evaluate, have_balls, workspace
 from pin_metaik.kinematics.guesses import (
     ATLAS,
     TRIED,
@@ -35,7 +35,7 @@ def linearize(
 ) -> tuple[float, bool]:
     """Weighted residual r (m,) and Jacobian by coordinate J (n, m) at x; also |r|^2 and whether all is in tolerance."""
     work = workspace(x.shape[0], rows, joints.shape[0])
-    square, met = evaluate((joints, wiring, ends, tips), tasks, rows, x, work)
+    square, met = evaluate((joints, wiring, ends, tips), tasks, rows, x, work, have_balls(tasks))
     copy(work[6], r)
     for c in range(x.shape[0]):
         copy(work[7][c], J[c])

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.interrupts import Interrupted
 from pin_metaik.learn.arrays import Array, as_table
 from pin_metaik.randomness import as_generator
 
@@ -34,6 +36,7 @@ class Clusters:
     interrupted: bool = False
 
 
+@checked
 def fuzzy_c_means(
     Z: ArrayLike,
     clusters: int,
@@ -62,6 +65,7 @@ def fuzzy_c_means(
 
     Raises:
         InvalidSetting: Points that are no table of finite numbers, or settings out of range.
+        Interrupted: Ctrl-C; its ``result`` is the clusters so far.
     """
     Z = as_table("the points", Z)
     if not 1 <= clusters <= len(Z):
@@ -76,7 +80,7 @@ def fuzzy_c_means(
         raise InvalidSetting(f"the start has shape {centres.shape}: expected ({clusters}, {Z.shape[1]})")
     rest = tolerance * float(np.ptp(Z, axis=0).max())
     objective: list[float] = []
-    converged = interrupted = False
+    converged = False
     try:
         while not converged and len(objective) < iterations:
             moved, J = _step(Z, centres, m)
@@ -86,13 +90,18 @@ def fuzzy_c_means(
             if callback is not None:
                 callback(len(objective), J)
     except KeyboardInterrupt:
-        interrupted = True
-    return Clusters(centres, np.array(objective), converged, interrupted)
+        raise Interrupted(Clusters(centres, np.array(objective), converged, interrupted=True)) from None
+    return Clusters(centres, np.array(objective), converged)
 
 
+@checked
 def memberships(Z: ArrayLike, centres: ArrayLike, m: float = 2.0) -> Array:
     """The memberships (c, n) of points Z (n, d) in clusters with centres (c, d): columns sum to one."""
     Z, centres = as_table("the points", Z), as_table("the centres", centres)
+    if Z.shape[1] != centres.shape[1]:
+        raise InvalidSetting(f"points and centres have as many columns, got {Z.shape[1]} and {centres.shape[1]}")
+    if not 1 < m < math.inf:
+        raise InvalidSetting(f"m must be a finite number above 1, not {m!r}")
     W = np.empty((len(Z), len(centres)))
     _weigh(Z, centres, m, W, np.empty_like(W))
     U: Array = (W / W.sum(axis=1, keepdims=True)).T

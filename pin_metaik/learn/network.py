@@ -8,13 +8,17 @@ from functools import cached_property
 
 import numpy as np
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.learn.arrays import Array
 from pin_metaik.randomness import as_generator
 
 ROWS = 4096  # at a time: as many stay in the cache, and BLAS does not spread them over threads that wait for each other
 
+WIDEST = 10_000  # neurons of a layer: this is a small dense network
 
+
+@checked
 @dataclass(frozen=True)
 class Network:
     """Layers of tanh neurons and one linear output; ``Network(2, (5, 5))`` is 2:5:5:1.
@@ -33,8 +37,8 @@ class Network:
     hidden: tuple[int, ...]
 
     def __post_init__(self) -> None:
-        if self.inputs < 1 or any(neurons < 1 for neurons in self.hidden):
-            raise InvalidSetting(f"every layer needs a neuron, got {self}")
+        if not all(1 <= neurons <= WIDEST for neurons in (self.inputs, *self.hidden)):
+            raise InvalidSetting(f"every layer has 1 to {WIDEST:,} neurons, got {self}")
 
     @property
     def sizes(self) -> tuple[int, ...]:
@@ -64,11 +68,13 @@ class Network:
 
     def outputs(self, w: Array, X: Array) -> Array:
         """Outputs (n,) for inputs X (n, inputs)."""
+        w, X = self._given(w, X)
         pieces = (X[first : first + ROWS] for first in range(0, len(X) or 1, ROWS))
         return np.concatenate([self._forward(w, piece)[-1][:, 0] for piece in pieces])
 
     def jacobian(self, w: Array, X: Array) -> Array:
         """Derivatives (n, count) of the outputs by the weights."""
+        w, X = self._given(w, X)
         activations = self._forward(w, X)
         J = np.empty((len(X), self.count))
         delta = np.ones((len(X), 1))  # of the output by what a layer's neurons sum up
@@ -87,10 +93,11 @@ class Network:
 
     def gradient(self, w: Array, X: Array, y: Array) -> tuple[float, Array]:
         """Mean squared error of the outputs against y (n,), and its gradient (count,)."""
+        w, X = self._given(w, X)
         activations = self._forward(w, X)
-        error = activations[-1] - y[:, None]
+        error = activations[-1] - array("y", y, len(X), finite=False)[:, None]
         gradient = np.empty(self.count)
-        delta = 2 / len(X) * error
+        delta = 2 / max(len(X), 1) * error
         at = self.count
         layers = self._layers(w)
         for layer in reversed(range(len(layers))):
@@ -103,6 +110,10 @@ class Network:
             if layer:
                 delta = (delta @ W) * (1 - a**2)
         return float(np.mean(np.square(error))), gradient
+
+    def _given(self, w: Array, X: Array) -> tuple[Array, Array]:
+        """Weights (count,) and inputs (n, inputs) that somebody gave."""
+        return array("w", w, self.count, finite=False), array("X", X, "n", self.inputs, finite=False)
 
     def _layers(self, w: Array) -> list[tuple[Array, Array]]:
         """Matrix and biases of every layer, as views of w."""

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.interrupts import wrapped
 from pin_metaik.learn.arrays import Array, as_table
 from pin_metaik.learn.network import Network
 from pin_metaik.learn.trainers import Callback, Trainer, Training, train
@@ -97,13 +99,18 @@ class Regressor:
 
     def predict(self, X: Array) -> Array:
         """Outputs (n,) for inputs X (n, d), without a word about their range."""
-        return self.output.up(self.network.outputs(self.w, self.inputs.down(X))[:, None])[:, 0]
+        return self.output.up(self.network.outputs(self.w, self.inputs.down(self._given(X)))[:, None])[:, 0]
 
     def knows(self, X: Array) -> NDArray[np.bool_]:
         """Whether each of the inputs X (n, d) lies in the training range (n,)."""
-        return np.asarray((np.abs(self.inputs.down(X)) <= 1 + EDGE).all(axis=1))
+        return np.asarray((np.abs(self.inputs.down(self._given(X))) <= 1 + EDGE).all(axis=1))
+
+    def _given(self, X: Array) -> Array:
+        """Inputs (n, d) that somebody gave."""
+        return array("X", X, "n", self.network.inputs, finite=False)
 
 
+@checked
 def fit(
     X: ArrayLike,
     y: ArrayLike,
@@ -122,16 +129,20 @@ def fit(
         trainer: By name or as an object.
         iterations: At most; what one is depends on the trainer.
         rng: Seed or generator of the first weights.
-        callback: Called after every iteration with its number and the error; Ctrl-C keeps the best so far.
+        callback: Called after every iteration with its number and the error.
 
     Raises:
         InvalidSetting: Data that do not fit together.
         UnknownName: No trainer of that name.
+        Interrupted: Ctrl-C; its ``result`` is the network with the best weights so far.
     """
     X = as_table("the inputs", X)
-    Y = as_table("the outputs", np.asarray(y)[:, None])
+    Y = array("the outputs", y, "n")[:, None]
     if len(X) != len(Y):
         raise InvalidSetting(f"{len(X)} inputs and {len(Y)} outputs: they must match")
     network, inputs, output = Network(X.shape[1], tuple(hidden)), Scale.of(X), Scale.of(Y)
-    training = train(trainer, network, inputs.down(X), output.down(Y)[:, 0], network.initial(rng), iterations, callback)
-    return Regressor(network, training.w, inputs, output, training)
+    x, z, first = inputs.down(X), output.down(Y)[:, 0], network.initial(rng)
+    return wrapped(
+        lambda: train(trainer, network, x, z, first, iterations, callback),
+        lambda training: Regressor(network, training.w, inputs, output, training),
+    )

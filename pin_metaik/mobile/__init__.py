@@ -16,7 +16,7 @@ if find_spec("shapely") is None:
     raise MissingExtra("planning for mobile robots", "mobile")
 
 from pin_metaik.mobile.body import configurations, mobile_robot, velocities
-from pin_metaik.mobile.errors import Blocked, NoPath
+from pin_metaik.mobile.errors import Blocked, LooksLikeDegrees, NoPath
 from pin_metaik.mobile.motion.fastest import fastest_trajectory
 from pin_metaik.mobile.motion.learned import LearnedTurn, learn_turn
 from pin_metaik.mobile.motion.result import TrajectoryPlan
@@ -34,7 +34,7 @@ from pin_metaik.mobile.paths.result import PathPlan, PathStatus
 from pin_metaik.mobile.paths.visibility import Visibility
 from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.grids import OccupancyGrid, grid_of, read_grid
-from pin_metaik.mobile.world.polygons import read_polygons
+from pin_metaik.mobile.world.polygons import read_obstacles, read_polygons
 from pin_metaik.mobile.world.random_scene import random_scene
 from pin_metaik.mobile.world.scene import Scene, load_scene, scene_names
 
@@ -48,6 +48,7 @@ __all__ = [
     "Fitness",
     "FreeSpace",
     "LearnedTurn",
+    "LooksLikeDegrees",
     "NoPath",
     "OccupancyGrid",
     "PaperFitness",
@@ -74,6 +75,7 @@ __all__ = [
     "plan_trajectory",
     "random_scene",
     "read_grid",
+    "read_obstacles",
     "read_polygons",
     "scene_names",
     "shortest_path",

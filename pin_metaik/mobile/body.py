@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.mobile.motion.trajectory import Samples
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
-from pin_metaik.robots import Robot
+from pin_metaik.robots import Description, Robot
 
 HEIGHT = 0.8  # m, the Nomad 200's; where it matters to somebody it is an argument
 SMALLEST = 0.05  # m; a robot without a radius is drawn with this one
@@ -37,6 +37,7 @@ URDF = """<?xml version="1.0"?>
 """
 
 
+@checked
 def mobile_robot(vehicle: SynchroDrive, height: float = HEIGHT) -> Robot:
     """The robot as Pinocchio knows it; its frame ``base`` is on the floor below its centre, x is ahead.
 
@@ -49,15 +50,17 @@ def mobile_robot(vehicle: SynchroDrive, height: float = HEIGHT) -> Robot:
     radius = max(vehicle.radius, SMALLEST)
     numbers = {"middle": height / 2, "height": height, "radius": radius, "nose": radius / 2, "width": radius / 4}
     urdf = URDF.format(name=vehicle.name, **{key: f"{value:.6g}" for key, value in numbers.items()})
-    model = pin.buildModelFromXML(urdf, pin.JointModelPlanar())
-    return Robot(vehicle.name, model, "base", urdf, Path(__file__))
+    description = Description(urdf, Path(__file__), base="planar")
+    return Robot(vehicle.name, description.model(), "base", description)
 
 
+@checked
 def configurations(samples: Samples) -> NDArray[np.float64]:
     """Pinocchio's configurations (n, 4) along a trajectory."""
     return np.column_stack((samples.x, samples.y, np.cos(samples.heading), np.sin(samples.heading)))
 
 
+@checked
 def velocities(samples: Samples) -> NDArray[np.float64]:
     """Pinocchio's velocities (n, 3) along a trajectory, in the robot's own frame."""
     return np.column_stack((samples.v, np.zeros_like(samples.v), samples.omega))

@@ -1,8 +1,14 @@
-"""Errors of planning: a place the robot cannot be in, and two places with no way between them."""
+"""Errors of planning: a place the robot cannot be in, and two places with no way between them; and a warning."""
 
 from __future__ import annotations
 
 from pin_metaik.errors import MetaIKError
+
+Point = tuple[float, float]
+
+
+class LooksLikeDegrees(UserWarning):
+    """Coordinates that seem to be longitudes and latitudes where lengths in metres are wanted."""
 
 
 class Blocked(MetaIKError):
@@ -13,17 +19,18 @@ class Blocked(MetaIKError):
         point: Where it is (x, y).
         clearance: Distance it should keep from obstacles and walls.
         nearest: The nearest place (x, y) that would have worked; None if there is none at all.
+        join: None, or how grown obstacles end at their corners, if it keeps the clearance and only that covers it.
     """
 
     def __init__(
-        self, role: str, point: tuple[float, float], clearance: float, nearest: tuple[float, float] | None
+        self, role: str, point: Point, clearance: float, nearest: Point | None, join: str | None = None
     ) -> None:
-        self.role, self.point, self.clearance, self.nearest = role, point, clearance, nearest
-        grown = f" grown by {clearance:g}" if clearance else ""
+        self.role, self.point, self.clearance, self.nearest, self.join = role, point, clearance, nearest, join
+        where = f"is inside an obstacle{f' grown by {clearance:g}' if clearance else ''} or outside the workspace"
+        if join is not None:
+            where = f"keeps the clearance of {clearance:g}, but {_grown(join)} cover it"
         hint = f"the nearest free place is ({nearest[0]:g}, {nearest[1]:g})" if nearest else "no place is free"
-        super().__init__(
-            f"the {role} ({point[0]:g}, {point[1]:g}) is inside an obstacle{grown} or outside the workspace; {hint}"
-        )
+        super().__init__(f"the {role} ({point[0]:g}, {point[1]:g}) {where}; {hint}")
 
 
 class NoPath(MetaIKError):
@@ -33,12 +40,23 @@ class NoPath(MetaIKError):
         start: (x, y).
         goal: (x, y).
         clearance: Distance the path had to keep from obstacles and walls.
+        nearly: None if there is no way at all; else a clearance a little smaller that leaves one, so that there may be
+            one between the corners of the grown obstacles and the arcs that they stand for.
+        join: How grown obstacles ended at their corners.
     """
 
-    def __init__(self, start: tuple[float, float], goal: tuple[float, float], clearance: float) -> None:
-        self.start, self.goal, self.clearance = start, goal, clearance
-        hint = "; try a smaller radius or margin, or round joins" if clearance else ""
-        super().__init__(
-            f"no path from ({start[0]:g}, {start[1]:g}) to ({goal[0]:g}, {goal[1]:g}): obstacles or walls close every "
-            f"way that keeps a clearance of {clearance:g}{hint}"
-        )
+    def __init__(
+        self, start: Point, goal: Point, clearance: float, nearly: float | None = None, join: str = "mitre"
+    ) -> None:
+        self.start, self.goal, self.clearance, self.nearly, self.join = start, goal, clearance, nearly, join
+        where = f"no path from ({start[0]:g}, {start[1]:g}) to ({goal[0]:g}, {goal[1]:g})"
+        why = f"obstacles or walls close every way that keeps a clearance of {clearance:g}"
+        hint = "; try a smaller radius or margin" if clearance else ""
+        if nearly is not None:
+            why = f"{_grown(join)} close every way with a clearance of {clearance:g}, and {nearly:.6g} leaves one"
+            hint = "; try join='round'" if join == "mitre" else hint
+        super().__init__(f"{where}: {why}{hint}")
+
+
+def _grown(join: str) -> str:
+    return {"mitre": "the mitred corners of grown obstacles", "round": "the corners of grown obstacles"}[join]

@@ -17,7 +17,7 @@ from pin_metaik.errors import MissingExtra
 from pin_metaik.mobile.motion.result import TrajectoryPlan
 from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.paths.result import PathPlan
-from pin_metaik.mobile.world.growth import rings
+from pin_metaik.mobile.world.border import rings
 from pin_metaik.mobile.world.scene import Scene
 from pin_metaik.optimize.space import Array
 

@@ -8,12 +8,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.budget import Budget
 from pin_metaik.optimize.elite import Elite
 from pin_metaik.optimize.registry import make
 from pin_metaik.optimize.search import Metaheuristic, Search
-from pin_metaik.optimize.settings import whole
+from pin_metaik.optimize.settings import few
 from pin_metaik.optimize.space import Array, Box
 from pin_metaik.randomness import as_generator
 
@@ -35,6 +36,7 @@ class Best(NamedTuple):
     cost: float
 
 
+@checked
 class AskTell:
     """A search that waits: `ask` for points, evaluate them anywhere, `tell` their costs, until `status` is set.
 
@@ -67,7 +69,7 @@ class AskTell:
         *,
         keep: int = 1,
     ) -> None:
-        whole("keep", keep, 1)
+        few("keep", keep)
         algorithm = make(algorithm)
         self._name = type(algorithm).__name__
         self._budget = budget or Budget()
@@ -109,9 +111,7 @@ class AskTell:
         """
         if not self._asked:
             raise InvalidSetting("tell() without ask(): ask() for points first")
-        costs = np.array(costs, dtype=float)
-        if costs.shape != self._X.shape[:1]:
-            raise InvalidSetting(f"costs of shape {costs.shape} for points of shape {self._X.shape}: expected (k,)")
+        costs = array("costs", costs, len(self._X), finite=False).copy()
         if np.isnan(costs[costs.argmin()]):  # argmin stops at the first NaN
             costs[np.isnan(costs)] = np.inf
         self.elite.add(self._X, costs)
@@ -162,9 +162,5 @@ def _starts(seeds: ArrayLike | None, box: Box) -> Array:
     """The seeds as an array (s, n) inside the box, a copy."""
     if seeds is None:
         return np.empty((0, box.dimension))
-    X = np.array(seeds, dtype=float, ndmin=2)
-    if X.ndim != 2 or X.shape[1] != box.dimension:
-        raise InvalidSetting(f"seeds of shape {X.shape} in a box of dimension {box.dimension}: expected (s, n)")
-    if not np.isfinite(X).all():
-        raise InvalidSetting("seeds must be finite")
-    return box.clip(X)
+    X = array("seeds", seeds, "...", box.dimension)
+    return box.clip(X[None] if X.ndim == 1 else array("seeds", X, "s", box.dimension))

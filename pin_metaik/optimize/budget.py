@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
+from pin_metaik.arguments import shown
 from pin_metaik.errors import InvalidBudget
 
 
@@ -27,13 +30,13 @@ class Budget:
     target: float | None = None
 
     def __post_init__(self) -> None:
-        whole = hasattr(self.evaluations, "__index__") and not isinstance(self.evaluations, bool)
+        whole = hasattr(self.evaluations, "__index__") and not isinstance(self.evaluations, (bool, np.ndarray))
         if self.evaluations is not None and not (whole and self.evaluations > 0):
             raise InvalidBudget(f"evaluations must be a whole number above 0, not {self.evaluations!r}")
         if self.seconds is not None and not (_is_number(self.seconds) and self.seconds > 0):
             raise InvalidBudget(f"seconds must be a number above 0, not {self.seconds!r}")
         if self.target is not None and not _is_number(self.target):
-            raise InvalidBudget(f"target must be a cost, not {self.target!r}")
+            raise InvalidBudget(f"target must be a cost, not {shown(self.target)}")
 
     @property
     def ends(self) -> bool:
@@ -42,4 +45,4 @@ class Budget:
 
 
 def _is_number(value: object) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and not math.isnan(value)
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= math.inf

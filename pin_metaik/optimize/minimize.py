@@ -8,7 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidBudget
+from pin_metaik.interrupts import Interrupted
 from pin_metaik.optimize.asktell import AskTell, Status
 from pin_metaik.optimize.budget import Budget
 from pin_metaik.optimize.search import Metaheuristic
@@ -42,6 +44,7 @@ class Result:
     elite_costs: Array
 
 
+@checked
 def minimize(
     objective: Callable[[Array], ArrayLike],
     box: Box,
@@ -56,7 +59,7 @@ def minimize(
 ) -> Result:
     """Search the box for a point of least cost.
 
-    Ctrl-C ends the search and returns the best point so far (unless there is none yet: then it goes through).
+    Ctrl-C goes through, as an ``Interrupted`` with the best point so far once there is one.
 
     Args:
         objective: Costs (k,) of points (k, n); the array it gets is its own. NaN counts as +inf.
@@ -73,6 +76,7 @@ def minimize(
         UnknownName: No algorithm of that name.
         InvalidBudget: The budget would never end.
         InvalidSetting: Costs of the wrong shape; seeds or `keep` that make no sense; an algorithm that leaves the box.
+        Interrupted: Ctrl-C, after the first generation; its `result` is a Result.
     """
     if not budget.ends:
         raise InvalidBudget("this search might never end: give the budget evaluations=... or seconds=...")
@@ -89,6 +93,11 @@ def minimize(
         if search.generations == 0:
             raise
         search.stop()
+        raise Interrupted(_result(search, history if trace else None)) from None
+    return _result(search, history if trace else None)
+
+
+def _result(search: AskTell, history: list[tuple[float, float]] | None) -> Result:
     return Result(
         x=search.best.x,
         cost=search.best.cost,
@@ -96,7 +105,7 @@ def minimize(
         evaluations=search.run.evaluations,
         generations=search.generations,
         seconds=search.run.seconds,
-        trace=np.array(history).reshape(-1, 2) if trace else None,
+        trace=None if history is None else np.array(history).reshape(-1, 2),
         elite=search.elite.X,
         elite_costs=search.elite.costs,
     )

@@ -9,6 +9,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from pin_metaik.optimize.budget import Budget
+from pin_metaik.optimize.settings import few
 from pin_metaik.optimize.space import Array, Box
 
 
@@ -54,6 +55,7 @@ class Search:
 
     def start(self, count: int) -> Array:
         """An initial population (count, n): the first `count` seeds, then points drawn uniformly."""
+        few("count", count, 0)
         given = self.seeds[:count]
         return np.concatenate((given, self.space.sample(self.rng, count - len(given))))
 

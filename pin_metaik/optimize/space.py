@@ -7,12 +7,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, instance
 from pin_metaik.errors import InvalidBounds
+from pin_metaik.optimize.settings import MANY, few
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, init=False)
 class Box:
     """The points ``lower <= x <= upper``, coordinate by coordinate.
 
@@ -30,8 +32,10 @@ class Box:
     upper: Array
     _rows: tuple[Array, Array] = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
-        lower, upper = _vector("lower", self.lower), _vector("upper", self.upper)
+    def __init__(self, lower: ArrayLike, upper: ArrayLike | None = None) -> None:
+        if upper is None:
+            raise InvalidBounds("the box of a search has lower and upper bounds; a solid is a mik.collision.Box(size)")
+        lower, upper = _vector("lower", lower), _vector("upper", upper)
         if lower.shape != upper.shape:
             raise InvalidBounds(f"lower has {lower.size} bounds and upper has {upper.size}: they must match")
         for index in np.flatnonzero(lower > upper):
@@ -57,11 +61,16 @@ class Box:
 
     def sample(self, rng: np.random.Generator, count: int) -> Array:
         """Points drawn uniformly: (count, n)."""
+        if not isinstance(rng, np.random.Generator):
+            instance(np.random.Generator, rng=rng)
+        if type(count) is not int or not 0 <= count <= MANY:
+            few("count", count, 0)
         X: Array = self.lower + rng.random((count, self.dimension)) * self.width
         return np.minimum(X, self.upper, out=X)  # rounding may have passed it
 
     def clip(self, X: Array) -> Array:
         """The nearest point of the box, for each of the points X (k, n) or (n,)."""
+        X = self._points("X", X)
         lower, upper = self._bounds_like(X)
         clipped: Array = np.maximum(X, lower)
         return np.minimum(clipped, upper, out=clipped)
@@ -76,6 +85,8 @@ class Box:
             origin: The points in the box (k, n) they came from.
         """
         inside = self.clip(X)
+        if not isinstance(origin, np.ndarray) or origin.shape != inside.shape:
+            origin = array("origin", origin, *inside.shape)
         outside = inside != X
         return np.where(outside, 0.5 * inside + 0.5 * origin, X) if outside.any() else X
 
@@ -87,6 +98,13 @@ class Box:
     def holds(self, X: Array) -> bool:
         """Whether all of the points X (k, n) lie in the box."""
         return bool((self.clip(X) == X).all())
+
+    def _points(self, name: str, X: Array) -> Array:
+        """X as points (k, n) or one point (n,)."""
+        if type(X) is np.ndarray and X.dtype.char == "d" and X.ndim in (1, 2) and X.shape[-1] == self.lower.size:
+            return X
+        given = array(name, X, "...", self.lower.size, finite=False)
+        return array(name, X, "k", self.lower.size, finite=False) if given.ndim > 2 else given
 
     def _bounds_like(self, X: Array) -> tuple[Array, Array]:
         """The bounds repeated for every row of X: three times as fast as broadcasting six columns."""
@@ -102,7 +120,7 @@ def _vector(name: str, values: ArrayLike) -> Array:
     """A read-only copy of a vector of finite floats."""
     try:
         vector = np.array(values, dtype=float)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise InvalidBounds(f"{name} bounds must be numbers: {error}") from None
     if vector.ndim != 1 or vector.size == 0:
         raise InvalidBounds(f"{name} bounds must be one vector of at least one number, not of shape {vector.shape}")

@@ -9,14 +9,59 @@ import threading
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import pinocchio as pin
 
+from pin_metaik.arguments import checked, checked_as
 from pin_metaik.errors import InvalidBounds, InvalidModel
 
+Base = Literal["fixed", "free flyer", "planar"]
+ROOTS = {"free flyer": pin.JointModelFreeFlyer, "planar": pin.JointModelPlanar}
+
 _STDERR = threading.Lock()
+
+
+@checked_as(InvalidModel)
+@dataclass(frozen=True)
+class Description:
+    """What a model is made from: plain values, so that a process that gets them makes the same model again.
+
+    Attributes:
+        urdf: URDF text.
+        source: The file it comes from; meshes are looked for from there.
+        base: What joins the base to the world.
+        mimic: Couple joints with a mimic tag to the joint they follow.
+    """
+
+    urdf: str = field(repr=False)
+    source: Path
+    base: Base = "fixed"
+    mimic: bool = True
+
+    def model(self) -> pin.Model:
+        """The model, built anew, and remembered with what it was made from (``description_of``).
+
+        Raises:
+            InvalidModel: If the text is not a URDF; the message has the parser's own reason.
+            InvalidBounds: If a joint's lower limit is above its upper one.
+        """
+        model = build_model(self.urdf, self.source, base=self.base, mimic=self.mimic)
+        _MADE_FROM[model] = self
+        return model
+
+
+_MADE_FROM: WeakKeyDictionary[pin.Model, Description] = WeakKeyDictionary()
+
+
+@checked
+def description_of(model: pin.Model) -> Description | None:
+    """What a model was made from, or None if it is not one of ``Description.model``."""
+    return _MADE_FROM.get(model)
 
 
 def read_urdf(path: Path) -> str:
@@ -33,7 +78,7 @@ def read_urdf(path: Path) -> str:
         raise InvalidModel(f"{path} is not a URDF: it is not UTF-8 text") from None
 
 
-def build_model(urdf: str, source: Path, *, free_flyer: bool = False, mimic: bool = True) -> pin.Model:
+def build_model(urdf: str, source: Path, *, base: Base = "fixed", mimic: bool = True) -> pin.Model:
     """Model of a URDF text that comes from the file ``source``.
 
     Joints with a mimic tag become ``JointModelMimic``, scaled copies of the joint they follow, if Pinocchio can hold
@@ -49,7 +94,7 @@ def build_model(urdf: str, source: Path, *, free_flyer: bool = False, mimic: boo
             raise InvalidModel(f"{source} is not a URDF: its outermost element is not <robot>")
     except ET.ParseError as error:
         raise InvalidModel(f"{source} is not well-formed XML: {error}") from None
-    root = (pin.JointModelFreeFlyer(),) if free_flyer else ()
+    root = () if base == "fixed" else (ROOTS[base](),)
     with _parser_prints() as prints:
         try:
             model = pin.buildModelFromXML(urdf, *root, mimic=False)  # also says what is wrong if something is

@@ -9,6 +9,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, checked, checked_as
 from pin_metaik.errors import InvalidConfiguration, InvalidTable
 
 Array = NDArray[np.float64]
@@ -16,6 +17,7 @@ Convention = Literal["standard", "modified"]
 JointType = Literal["revolute", "continuous", "prismatic"]
 
 
+@checked_as(InvalidTable)
 @dataclass(frozen=True)
 class DHRow:
     """One joint with its four constants, of which it varies one: q is added to theta, or to d of a prismatic joint.
@@ -64,6 +66,7 @@ class DHRow:
             raise InvalidTable(f"limits are crossed: lower {self.lower:g} is above upper {self.upper:g}")
 
 
+@checked_as(InvalidTable)
 @dataclass(frozen=True)
 class Placement:
     """A fixed transform: R = Rz(yaw) Ry(pitch) Rx(roll), as URDF has it.
@@ -89,6 +92,7 @@ class Placement:
         return turn
 
 
+@checked_as(InvalidTable)
 @dataclass(frozen=True)
 class DHTable:
     """A serial arm as a DH table.
@@ -131,6 +135,7 @@ class DHTable:
         """Names of the joints, from the base."""
         return tuple(row.name or f"joint_{i}" for i, row in enumerate(self.rows, start=1))
 
+    @checked
     def frames(self, q: ArrayLike) -> Array:
         """Frames 0 (the base) to n in the world.
 
@@ -143,9 +148,9 @@ class DHTable:
         Raises:
             InvalidConfiguration: If q has not one finite number per joint.
         """
-        positions = np.asarray(q, dtype=float)
-        if positions.shape != (len(self.rows),) or not np.isfinite(positions).all():
-            raise InvalidConfiguration(f"{self.name} needs {len(self.rows)} finite joint positions, not {q!r}")
+        positions = array(
+            f"{self.name} needs {len(self.rows)} finite joint positions", q, len(self.rows), error=InvalidConfiguration
+        )
         T = [self.base.matrix]
         for row, position in zip(self.rows, positions, strict=True):
             theta = row.theta if row.type == "prismatic" else row.theta + position
@@ -155,6 +160,7 @@ class DHTable:
             T.append(T[-1] @ (along_z @ along_x if self.convention == "standard" else along_x @ along_z))
         return np.array(T)
 
+    @checked
     def fk(self, q: ArrayLike) -> Array:
         """Tool frame in the world, 4x4: the DH product between base and tool.
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
 import pinocchio as pin
 
+from pin_metaik.arguments import checked_as
 from pin_metaik.errors import InvalidModel, InvalidTable, UnknownName
-from pin_metaik.robots.description import build_geometry, build_model, mimic_joints, read_urdf
+from pin_metaik.robots.description import Description, build_geometry, mimic_joints, read_urdf
 from pin_metaik.robots.library import LEFT_OUT, TIPS, catalogue, example_robots
 from pin_metaik.robots.table import read_table
 from pin_metaik.robots.urdf import to_urdf
@@ -26,17 +27,25 @@ class Robot:
         name: Name it was asked for by, or the one its file gives.
         model: Its ``pin.Model``.
         frame: Default tip frame: one that at least one joint moves, under a name no other frame has.
-        urdf: Its URDF text; that of a DH table is written from it.
-        source: The file it comes from.
+        description: What the model is made from: plain values that pickle, where a model with mimic joints does not.
         srdf: File with reference configurations and disabled collisions, or None.
     """
 
     name: str
     model: pin.Model = field(repr=False)
     frame: str
-    urdf: str = field(repr=False)
-    source: Path
+    description: Description = field(repr=False)
     srdf: Path | None = None
+
+    @property
+    def urdf(self) -> str:
+        """Its URDF text; that of a DH table is written from it."""
+        return self.description.urdf
+
+    @property
+    def source(self) -> Path:
+        """The file it comes from."""
+        return self.description.source
 
     @cached_property
     def collision_model(self) -> pin.GeometryModel:
@@ -55,6 +64,10 @@ class Robot:
             InvalidModel: If a mesh is missing or unreadable; the message names it.
         """
         return self._geometry(pin.GeometryType.VISUAL)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Pickle without the geometry: megabytes, read again on first use."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @property
     def free_mimics(self) -> tuple[str, ...]:
@@ -89,6 +102,7 @@ def robot_names() -> list[RobotName]:
     return [RobotName(robot.name, source, robot.model.nv, robot.frame) for robot, source in loaded]
 
 
+@checked_as(InvalidModel)
 def load_robot(
     name: str | Path | RobotName,
     *,
@@ -121,9 +135,10 @@ def load_robot(
         raise InvalidTable(f"{name} has no parameters: only DH tables have")
     else:
         urdf = read_urdf(path)
-    model = build_model(urdf, path, free_flyer=free_flyer, mimic=mimic)
+    description = Description(urdf, path, "free flyer" if free_flyer else "fixed", mimic)
+    model = description.model()
     label = label or model.name
-    return Robot(label, model, _tip(model, TIPS.get(label, "tool0"), path), urdf, path, srdf)
+    return Robot(label, model, _tip(model, TIPS.get(label, "tool0"), path), description, srdf)
 
 
 def _locate(name: str | Path) -> tuple[str, Path, Path | None]:

@@ -36,6 +36,7 @@ from numbers import Real
 from pathlib import Path
 from typing import Any
 
+from pin_metaik.arguments import checked_as
 from pin_metaik.errors import InvalidTable, UnknownName
 from pin_metaik.robots.dh import DHRow, DHTable, JointType, Placement
 
@@ -48,6 +49,7 @@ _JOINT = ("a", "alpha")
 _JOINT_OPTIONAL = ("name", "type", "d", "theta", "offset", "limits", "continuous", "velocity", "effort")
 
 
+@checked_as(InvalidTable)
 def read_table(path: str | Path, parameters: Mapping[str, float] | None = None) -> DHTable:
     """Read a DH table.
 

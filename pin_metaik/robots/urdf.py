@@ -18,7 +18,9 @@ import xml.etree.ElementTree as ET
 from math import atan2, cos, dist, hypot, sin
 from pathlib import Path
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidTable
+from pin_metaik.output import writable
 from pin_metaik.robots.dh import DHRow, DHTable, Placement
 from pin_metaik.robots.library import catalogue
 from pin_metaik.robots.table import read_table
@@ -32,6 +34,7 @@ _OWN = ("universe", "root_joint", "world", "base_joint", "base_link", "flange_jo
 _COLOURS = {"grey": "0.35 0.36 0.38 1", "blue": "0.2 0.45 0.75 1", "orange": "0.9 0.5 0.15 1"}
 
 
+@checked
 def to_urdf(table: DHTable) -> str:
     """URDF text of a table: the same table gives the same bytes.
 
@@ -67,9 +70,14 @@ def to_urdf(table: DHTable) -> str:
     return '<?xml version="1.0"?>\n' + ET.tostring(robot, encoding="unicode") + "\n"
 
 
+@checked
 def write_urdfs(folder: str | Path) -> list[Path]:
-    """Write the URDF of every table in the catalogue into a folder, which is made if need be; returns the files."""
-    folder = Path(folder)
+    """Write the URDF of every table in the catalogue into a folder, which is made if need be; returns the files.
+
+    Raises:
+        CannotWrite: It cannot be made or written into.
+    """
+    folder = writable(folder, folder=True)
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     for name, path in catalogue().items():

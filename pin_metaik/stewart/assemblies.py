@@ -17,6 +17,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidConfiguration, InvalidGeometry, InvalidSetting
 from pin_metaik.optimize.space import Array
 from pin_metaik.randomness import as_generator
@@ -84,6 +85,7 @@ class Start:
     points: Complexes
 
 
+@checked
 def all_forward(geometry: Geometry, lengths: ArrayLike, rng: int | np.random.Generator | None = 0) -> Assemblies:
     """Every assembly: the poses at which six legs have these lengths, highest first; there are 0 ... 40.
 

@@ -12,11 +12,12 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from pin_metaik.errors import InvalidConfiguration
+from pin_metaik.arguments import array, checked
+from pin_metaik.errors import InvalidConfiguration, InvalidSetting
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.inverse import leg_vectors
 from pin_metaik.stewart.mechanism import Mechanism
-from pin_metaik.stewart.poses import PoseLike, as_poses
+from pin_metaik.stewart.poses import PoseLike, one_pose
 from pin_metaik.stewart.urdf import to_urdf
 
 TOLERANCE = 1e-13  # m
@@ -42,8 +43,11 @@ class ClosedModel:
         """The free-flyer; its velocity is in the platform frame."""
         return self.model.joints[self.model.getJointId("platform_joint")]
 
+    @checked
     def leg(self, i: int) -> list[pin.JointModel]:
         """Joints of leg i, counted from 0: about x, about y, length."""
+        if not 0 <= i < self.mechanism.geometry.n:
+            raise InvalidSetting(f"leg i is 0 to {self.mechanism.geometry.n - 1}, got {i}")
         names = (f"leg_{i + 1}_about_x", f"leg_{i + 1}_about_y", f"leg_{i + 1}_length")
         return [self.model.joints[self.model.getJointId(name)] for name in names]
 
@@ -52,9 +56,10 @@ class ClosedModel:
         """Columns of v that are the rates of the legs (n)."""
         return [self.leg(i)[2].idx_v for i in range(self.mechanism.geometry.n)]
 
+    @checked
     def configuration(self, pose: PoseLike) -> Array:
         """The configuration q (nq,) at a pose, in closed form: the direction of a leg is Rx(a) Ry(b) z."""
-        T = as_poses(pose)[0]
+        T = one_pose(pose)
         q: Array = pin.neutral(self.model)
         first = self.platform.idx_q
         q[first : first + 7] = pin.SE3ToXYZQUAT(pin.SE3(T))
@@ -65,21 +70,22 @@ class ClosedModel:
             q[about_x.idx_q], q[about_y.idx_q], q[length.idx_q] = np.arctan2(-y, z), np.arcsin(np.clip(x, -1, 1)), d
         return q
 
+    @checked
     def pose(self, q: Array) -> Array:
         """The pose (4, 4) of the platform in a configuration."""
+        q = array("a configuration", q, self.model.nq, error=InvalidConfiguration)
         first = self.platform.idx_q
         pose: Array = pin.XYZQUATToSE3(q[first : first + 7]).homogeneous
         return pose
 
+    @checked
     def residual(self, q: ArrayLike) -> tuple[Array, Array]:
         """How far the loops are open, m (3 n,), and its derivative by v (3 n, nv).
 
         Raises:
             InvalidConfiguration: Not a configuration of the model.
         """
-        q = np.asarray(q, dtype=float)
-        if q.shape != (self.model.nq,) or not np.isfinite(q).all():
-            raise InvalidConfiguration(f"a configuration is {self.model.nq} finite numbers, got shape {q.shape}")
+        q = array("a configuration", q, self.model.nq, error=InvalidConfiguration)
         data = self.model.createData()
         pin.computeJointJacobians(self.model, data, q)
         errors, rows = [], []
@@ -90,15 +96,14 @@ class ClosedModel:
             rows.append(closure.jacobian(self.model, data, state))
         return np.concatenate(errors), np.concatenate(rows)
 
+    @checked
     def forward(self, lengths: ArrayLike, start: PoseLike) -> Array | None:
         """The pose (4, 4) at which the loops close with these leg lengths (n,) in m, by Newton; None if it finds none.
 
         Raises:
             InvalidConfiguration: Not n finite lengths.
         """
-        d = np.asarray(lengths, dtype=float)
-        if d.shape != (len(self.slides),) or not np.isfinite(d).all():
-            raise InvalidConfiguration(f"leg lengths are {len(self.slides)} finite numbers, got shape {d.shape}")
+        d = array("lengths", lengths, len(self.slides), error=InvalidConfiguration)
         q = self.configuration(start)
         q[[self.leg(i)[2].idx_q for i in range(len(d))]] = d
         free = np.setdiff1d(np.arange(self.model.nv), self.slides)
@@ -111,6 +116,7 @@ class ClosedModel:
             q = pin.integrate(self.model, q, step)
         return None
 
+    @checked
     def rates(self, pose: PoseLike) -> Array:
         """d_dot = J (v, omega) from the closed loops: J (n, 6), v of P and omega in the base frame."""
         q = self.configuration(pose)
@@ -125,6 +131,7 @@ class ClosedModel:
         return rates
 
 
+@checked
 def closed_model(mechanism: Mechanism) -> ClosedModel:
     """A mechanism in Pinocchio, its loops closed where the ends of legs and platform of its URDF belong together."""
     model = pin.buildModelFromXML(to_urdf(mechanism))

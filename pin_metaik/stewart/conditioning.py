@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from math import exp, log
 from numbers import Real
@@ -10,6 +11,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked, shown
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.settings import one_of
 from pin_metaik.optimize.space import Array
@@ -43,8 +45,9 @@ class Dexterity:
 
     def __post_init__(self) -> None:
         one_of("norm", self.norm, Norm)
-        if self.length not in ("rm", "best") and not (is_number(self.length) and 0.0 < float(self.length) < np.inf):
-            raise InvalidSetting(f"length is 'rm', 'best' or a length above zero in m, got {self.length!r}")
+        named = isinstance(self.length, str) and self.length in ("rm", "best")
+        if not named and not (is_number(self.length) and 0.0 < self.length <= sys.float_info.max):  # type: ignore[operator]
+            raise InvalidSetting(f"length is 'rm', 'best' or a length above zero in m, got {shown(self.length)}")
 
     @property
     def code(self) -> int:
@@ -55,6 +58,7 @@ class Dexterity:
 DEFAULT = Dexterity()
 
 
+@checked
 def characteristic_length(geometry: Geometry, poses: PoseLike, dexterity: Dexterity = DEFAULT) -> float:
     """The length L in m that these settings mean for these poses.
 
@@ -70,12 +74,14 @@ def characteristic_length(geometry: Geometry, poses: PoseLike, dexterity: Dexter
             return float(length)
 
 
+@checked
 def best_length(geometry: Geometry, poses: PoseLike, norm: Norm = "frobenius") -> float:
     """The one characteristic length in m with the greatest mean nu over these poses.
 
     At a single pose, for the Frobenius norm and six legs, that is ``L^4 = |J2|^2 |X1|^2 / (|J1|^2 |X2|^2)`` with
     ``J = [J1, J2]`` and ``J^-1 = [X1; X2]``. The radius of the platform where every pose is singular.
     """
+    one_of("norm", norm, Norm)
     T = as_poses(poses)
     size = float(np.linalg.norm(geometry.m, axis=1).max())
 
@@ -86,6 +92,7 @@ def best_length(geometry: Geometry, poses: PoseLike, norm: Norm = "frobenius") -
     return exp(found) if loss(found) < 0.0 else geometry.platform_radius
 
 
+@checked
 def conditioning(geometry: Geometry, poses: PoseLike, dexterity: Dexterity = DEFAULT) -> Array:
     """The local conditioning index nu (k,) at poses, 0 ... 1 and 0 where J is singular; one number for a single pose.
 

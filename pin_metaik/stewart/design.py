@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pin_metaik.arguments import checked
+from pin_metaik.interrupts import wrapped
 from pin_metaik.optimize import AskTell, Budget, Result, Status, minimize
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.fitness import UNUSABLE, Fitness, Score, task_of
@@ -31,6 +33,9 @@ class Designed:
     def success(self) -> bool:
         """Whether a feasible design was found. One found before an interruption counts."""
         return self.score is not None
+
+    def __bool__(self) -> bool:
+        return self.success
 
     @property
     def interrupted(self) -> bool:
@@ -66,12 +71,11 @@ class _Measured:
         return costs
 
 
+@checked
 def design(
     mechanism: Mechanism, *, rng: int | np.random.Generator | None = None, watch: Watch | None = None
 ) -> Designed:
     """Look for the dimensions with the best fitness, by the mechanism's task.
-
-    Ctrl-C ends the search and returns the best design so far (unless the first generation is not through).
 
     Args:
         mechanism: What to start from: the joints and legs there are, and everything that is fixed.
@@ -84,6 +88,7 @@ def design(
     Raises:
         InvalidSetting: The mechanism has no task, or one that does not fit it.
         InvalidBounds: Ranges that do not fit the mechanism, or leave nothing free.
+        Interrupted: Ctrl-C, after the first generation; its ``result`` is the best design so far.
     """
     task = task_of(mechanism)
     fitness = Fitness(mechanism)
@@ -93,16 +98,23 @@ def design(
         if watch is not None:
             watch(search.run.evaluations, task.evaluations)
 
-    found = minimize(
-        _Measured(fitness),
-        fitness.variables.box,
-        task.algorithm,
-        Budget(evaluations=task.evaluations),
-        task.seed if rng is None else rng,
-        seeds=point if task.from_current else None,
-        trace=True,
-        callback=tell,
-    )
+    def search() -> Result:
+        return minimize(
+            _Measured(fitness),
+            fitness.variables.box,
+            task.algorithm,
+            Budget(evaluations=task.evaluations),
+            task.seed if rng is None else rng,
+            seeds=point if task.from_current else None,
+            trace=True,
+            callback=tell,
+        )
+
+    return wrapped(search, lambda found: _designed(mechanism, fitness, found))
+
+
+def _designed(mechanism: Mechanism, fitness: Fitness, found: Result) -> Designed:
+    """What a search has found, with the score of its best design."""
     if found.cost >= UNUSABLE:
         return Designed(mechanism, None, found)
     geometry, limits = fitness.build(fitness.variables.dimensions(found.x))

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.geometry import Geometry, chords
@@ -41,6 +42,7 @@ class Score:
     workspace: float
 
 
+@checked
 class Fitness:
     """The objective of a design: costs (k,) of points (k, v); the cost of a feasible design is minus its fitness.
 
@@ -64,7 +66,7 @@ class Fitness:
 
     def __call__(self, X: Array) -> Array:
         """Costs (k,) of the designs at points X (k, v)."""
-        return np.array([self.cost(x) for x in X])
+        return np.array([self.cost(x) for x in array("X", X, "k", self.variables.box.dimension)])
 
     def cost(self, x: Array, *, fine: bool = False) -> float:
         """Minus the fitness; 1 ... 2 for a workspace of no use, 2 if it is empty, more for what cannot be built.
@@ -75,7 +77,7 @@ class Fitness:
             x: The design (v,).
             fine: Whether to measure its workspace by a few thousand cells instead of a few hundred.
         """
-        dimensions = self.variables.dimensions(x)
+        dimensions = self.variables.dimensions(array("x", x, self.variables.box.dimension))
         if missing := self.missing(dimensions):
             return UNBUILDABLE + missing / self.cube
         workspace = self.workspace(*self.build(dimensions), fine=fine)
@@ -88,6 +90,7 @@ class Fitness:
         score, least = self.score(workspace), self.task.least_workspace
         return UNUSABLE + 1.0 - score.workspace / least if score.workspace < least else -score.fitness
 
+    @checked
     def missing(self, dimensions: Dimensions) -> float:
         """How much length is missing for the joints to keep their gap and the legs to extend, m; 0 if none."""
         gaps = np.concatenate(
@@ -99,6 +102,7 @@ class Fitness:
         short = np.maximum(self.task.joint_gap - gaps, 0.0).sum() + max(dimensions.shortest - dimensions.longest, 0.0)
         return float(short) if gaps.min() > 0.0 else float(short) + self.cube
 
+    @checked
     def build(self, dimensions: Dimensions) -> tuple[Geometry, LegLimits]:
         """The platform with these dimensions.
 
@@ -114,6 +118,7 @@ class Fitness:
         )
         return geometry, replace(self.mechanism.limits, shortest=dimensions.shortest, longest=dimensions.longest)
 
+    @checked
     def workspace(self, geometry: Geometry, limits: LegLimits, *, fine: bool = False) -> Workspace:
         """The workspace on the task's grid, or on a finer one within its ranges where too few of its cells are reached.
 
@@ -123,6 +128,7 @@ class Fitness:
         found, _ = explored(geometry, limits, self.task.grid, self.mechanism.dexterity, least, most)
         return with_best_length(found)
 
+    @checked
     def score(self, workspace: Workspace) -> Score:
         """The fitness of a workspace that is not singular, and its two parts."""
         counted = workspace.reached

@@ -8,6 +8,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidConfiguration
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.geometry import Geometry
@@ -63,6 +64,7 @@ class Forward:
         return ForwardStatus(int(self.states[0]))
 
 
+@checked
 def forward(geometry: Geometry, lengths: ArrayLike, start: PoseLike | None = None) -> Forward:
     """The pose nearest to the start, in Newton's sense, at which the legs have these lengths.
 
@@ -102,7 +104,7 @@ def as_lengths(geometry: Geometry, lengths: ArrayLike) -> Array:
     """
     try:
         d = np.array(lengths, dtype=float, ndmin=2, order="C")
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidConfiguration(f"leg lengths are numbers in m, got {lengths!r}") from None
     if d.ndim != 2 or d.shape[1] != geometry.n:
         raise InvalidConfiguration(

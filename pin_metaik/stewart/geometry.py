@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from math import degrees, isfinite, tau
-from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, checked, number, shown
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
 
@@ -141,17 +141,17 @@ def chords(radius: float, angles: Array) -> Array:
     return np.asarray(2.0 * radius * np.sin(np.maximum(np.minimum(0.5 * steps, np.pi), -np.pi / 2)))
 
 
+@checked
 def legs_of(connection: ArrayLike) -> tuple[tuple[int, int], ...]:
     """The legs of a connection matrix (joints of the base, joints of the platform) of zeros and ones, row by row.
 
     Raises:
         InvalidGeometry: Not a matrix of zeros and ones.
     """
-    try:
-        matrix = np.asarray(connection, dtype=float)
-    except (TypeError, ValueError):
-        matrix = np.empty(0)
-    if matrix.ndim != 2 or not np.isin(matrix, (0.0, 1.0)).all():
+    matrix = array(
+        "a connection matrix of zeros and ones", connection, "base joints", "platform joints", error=InvalidGeometry
+    )
+    if not np.isin(matrix, (0.0, 1.0)).all():
         raise InvalidGeometry(
             f"a connection matrix has a row of zeros and ones for every base joint, got {connection!r}"
         )
@@ -167,15 +167,14 @@ def _frozen(array: Array) -> Array:
 def _number(name: str, value: object) -> float:
     if type(value) is float and isfinite(value):  # a design makes thousands of geometries
         return value
-    if isinstance(value, bool) or not isinstance(value, Real) or not isfinite(value):
-        raise InvalidGeometry(f"{name} is a finite number, got {value!r}")
-    return float(value)
+    return float(number(name, value, InvalidGeometry))
 
 
 def _numbers(name: str, values: Any) -> tuple[float, ...]:
-    if isinstance(values, str) or not isinstance(values, (Sequence, np.ndarray)):
-        raise InvalidGeometry(f"{name} is a list of numbers, got {values!r}")
-    return tuple(_number(name, value) for value in values)
+    listed = values.tolist() if isinstance(values, np.ndarray) else values
+    if isinstance(listed, str) or not isinstance(listed, Sequence):
+        raise InvalidGeometry(f"{name} is a list of numbers, got {shown(values)}")
+    return tuple(_number(name, value) for value in listed)
 
 
 def _radius(name: str, value: object) -> float:
@@ -208,7 +207,7 @@ def _angles(name: str, side: str, values: Any) -> tuple[float, ...]:
 def _legs(legs: Any, bases: int, platforms: int) -> tuple[tuple[int, int], ...]:
     try:
         ends = [(int(base), int(platform)) for base, platform in legs]
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidGeometry(f"legs are pairs (base joint, platform joint) counted from 0, got {legs!r}") from None
     if not FEWEST_LEGS <= len(ends) <= MOST_LEGS:
         raise InvalidGeometry(f"a platform has {FEWEST_LEGS} to {MOST_LEGS} legs, got {len(ends)}")

@@ -9,9 +9,10 @@ from typing import TypeAlias
 
 import numpy as np
 
-from pin_metaik.errors import InvalidBounds
+from pin_metaik.arguments import checked
+from pin_metaik.errors import InvalidBounds, InvalidSetting
 from pin_metaik.kinematics.pose import rpy_matrix
-from pin_metaik.optimize.settings import whole
+from pin_metaik.optimize.settings import few
 from pin_metaik.optimize.space import Array
 
 Range: TypeAlias = tuple[float, float]
@@ -54,10 +55,11 @@ class Grid:
     def __post_init__(self) -> None:
         for name in ("counts", "steps"):
             counts = getattr(self, name)
-            if not isinstance(counts, (tuple, list, np.ndarray)) or len(counts) != 3:
+            listed = counts.tolist() if isinstance(counts, np.ndarray) else counts
+            if not isinstance(listed, (tuple, list)) or len(listed) != 3:
                 raise InvalidBounds(f"{name} of a grid are three whole numbers, got {counts!r}")
             for count in counts:
-                whole(f"{name} of a grid", count, 1)
+                few(f"{name} of a grid", count)
             object.__setattr__(self, name, tuple(int(count) for count in counts))
         for name in ("x", "y", "z", "roll", "pitch", "yaw"):
             if (ends := getattr(self, name)) is not None:
@@ -80,9 +82,12 @@ class Grid:
         return np.array([rpy_matrix(*angles) for angles in self.rpy])
 
     @classmethod
+    @checked
     def at(cls, xyz: tuple[float, float, float], **orientations: object) -> Grid:
         """A grid of orientations at one position (m): ``Grid.at((0, 0, 0.4), steps=(9, 9, 1), roll=(-0.3, 0.3))``."""
         x, y, z = xyz
+        if unknown := orientations.keys() - {"steps", "roll", "pitch", "yaw"}:
+            raise InvalidSetting(f"a grid of orientations takes steps, roll, pitch and yaw, got {min(unknown)!r}")
         return cls((1, 1, 1), (x, x), (y, y), (z, z), **orientations)  # type: ignore[arg-type]  # checked as fields
 
 
@@ -94,7 +99,7 @@ def as_range(name: str, ends: object) -> Range:
     """
     try:
         low, high = (float(end) for end in ends)  # type: ignore[attr-defined]  # what has no two ends is told
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidBounds(f"the range of {name} is two numbers, got {ends!r}") from None
     if not (np.isfinite(low) and np.isfinite(high)) or low > high:
         raise InvalidBounds(f"the range of {name} is two finite numbers, the lower first, got {low:g} and {high:g}")

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.geometry import Geometry
 from pin_metaik.stewart.loading import load_kernels
 from pin_metaik.stewart.poses import PoseLike, as_poses, is_many
 
 
+@checked
 def leg_distances(geometry: Geometry, poses: PoseLike) -> Array:
     """Distance in m between the axes of each pair of legs in ``geometry.pairs``: (k, p), or (p,) for a single pose.
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.geometry import Geometry
 from pin_metaik.stewart.poses import PoseLike, as_poses, is_many
 
 
+@checked
 def leg_vectors(geometry: Geometry, poses: PoseLike) -> Array:
     """Legs from base to platform joint, in the base frame, m: (k, n, 3).
 
@@ -21,6 +23,7 @@ def leg_vectors(geometry: Geometry, poses: PoseLike) -> Array:
     return v
 
 
+@checked
 def leg_lengths(geometry: Geometry, poses: PoseLike) -> Array:
     """Lengths d_i = |v_i| of the legs, m: (k, n); (n,) for a single pose.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.conditioning import DEFAULT, Dexterity, characteristic_length
 from pin_metaik.stewart.geometry import Geometry
@@ -11,6 +12,7 @@ from pin_metaik.stewart.inverse import leg_vectors
 from pin_metaik.stewart.poses import PoseLike, as_poses, is_many
 
 
+@checked
 def jacobian(geometry: Geometry, poses: PoseLike) -> Array:
     """J (k, n, 6) with ``d_dot = J (v, omega)``, Eq. 4; (n, 6) for a single pose.
 
@@ -29,6 +31,7 @@ def jacobian(geometry: Geometry, poses: PoseLike) -> Array:
     return J if is_many(poses) else J[0]
 
 
+@checked
 def homogenised(geometry: Geometry, poses: PoseLike, dexterity: Dexterity = DEFAULT) -> Array:
     """``J_h = [J1, J2 / L]``, Eq. 7: dimensionless, (k, n, 6) or (n, 6).
 

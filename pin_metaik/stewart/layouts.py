@@ -9,6 +9,7 @@ from __future__ import annotations
 from math import pi, radians
 from re import fullmatch
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidGeometry, InvalidSetting, UnknownName
 from pin_metaik.stewart.geometry import FEWEST_LEGS, MOST_LEGS, Geometry
 
@@ -18,6 +19,7 @@ NAMED = ("3x3", "4x3", "4x4", "5x3", "5x4", "5x5", "6x3", "6x4", "6x5", "6x6")
 FEWEST_JOINTS = 3
 
 
+@checked
 def standard_geometry(
     type: str, base_radius: float, platform_radius: float, *, legs: int = 6, split: float = radians(15.0)
 ) -> Geometry:

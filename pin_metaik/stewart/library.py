@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import UnknownName
 from pin_metaik.stewart.mechanism import Mechanism
 from pin_metaik.stewart.reading import read_mechanism
@@ -16,6 +17,7 @@ def mechanism_names() -> list[str]:
     return sorted(path.stem for path in FOLDER.glob("*.toml"))
 
 
+@checked
 def load_mechanism(name: str | Path) -> Mechanism:
     """A mechanism of the catalogue by its name, or of a ``.toml`` file by its path.
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from math import cos, isfinite, pi
-from numbers import Real
+from math import cos, pi
 
 import numpy as np
 
+from pin_metaik.arguments import array, checked, number
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.geometry import Geometry
@@ -82,10 +82,7 @@ class LegLimits:
 
     def __post_init__(self) -> None:
         for name in ("shortest", "longest", "base_angle", "platform_angle", "distance"):
-            value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, Real) or not isfinite(value):
-                raise InvalidGeometry(f"{name} of the legs is a finite number, got {value!r}")
-            object.__setattr__(self, name, float(value))
+            object.__setattr__(self, name, float(number(f"{name} of the legs", getattr(self, name), InvalidGeometry)))
         if not self.shortest > 0.0:
             raise InvalidGeometry(f"the shortest leg is longer than zero, got {self.shortest:g} m")
         if self.shortest > self.longest:
@@ -98,9 +95,7 @@ class LegLimits:
         if self.distance < 0.0:
             raise InvalidGeometry(f"the distance between legs is not below zero, got {self.distance:g} m")
         if self.home is not None:
-            home = np.asarray(self.home, dtype=float)
-            if home.shape != (3,) or not np.isfinite(home).all():
-                raise InvalidGeometry(f"home is the position x, y, z of P, got {self.home!r}")
+            home = array("home is the position x, y, z of P", self.home, 3, error=InvalidGeometry)
             object.__setattr__(self, "home", tuple(home.tolist()))
 
     @property
@@ -119,6 +114,7 @@ class LegLimits:
         angles = [cos(angle) if angle < pi else -1.0 for angle in (self.base_angle, self.platform_angle)]
         return np.array([self.shortest, self.longest, *angles, self.distance])
 
+    @checked
     def sockets(self, geometry: Geometry) -> Array:
         """Unit axes (2, n, 3) of the base joints (base frame) and of the platform joints (platform frame).
 

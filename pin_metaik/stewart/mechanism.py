@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.stewart.conditioning import Dexterity
 from pin_metaik.stewart.geometry import Geometry
@@ -15,6 +16,7 @@ from pin_metaik.stewart.task import DesignTask
 from pin_metaik.stewart.workspace import Workspace
 
 
+@checked
 @dataclass(frozen=True)
 class Mechanism:
     """A named platform with everything that is asked about it.
@@ -55,6 +57,7 @@ class Mechanism:
         """How many m one of its unit of length is."""
         return float(LENGTHS[self.unit].factor)
 
+    @checked
     def survey(self, *, watch: Watch | None = None) -> Workspace:
         """Its workspace, by its own settings; see ``survey``."""
         return survey(self.geometry, self.limits, self.grid, self.dexterity, watch=watch)

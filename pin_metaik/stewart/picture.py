@@ -8,25 +8,56 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pin_metaik.errors import MissingExtra
+from pin_metaik.arguments import checked, instance
+from pin_metaik.errors import InvalidSetting, MissingExtra
 from pin_metaik.optimize.space import Array
+from pin_metaik.output import writable
 from pin_metaik.stewart.body import body_of, draw_body, polygons
 from pin_metaik.stewart.design import Designed
 from pin_metaik.stewart.geometry import on_circle
 from pin_metaik.stewart.inverse import leg_vectors
 from pin_metaik.stewart.mechanism import Mechanism
-from pin_metaik.stewart.poses import PoseLike, as_poses, pose_at
+from pin_metaik.stewart.poses import PoseLike, one_pose, pose_at
 from pin_metaik.stewart.workspace import Workspace
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+FORMATS = (".png", ".svg", ".pdf")
 STEEL, PLATE, ROD = "#4a4f57", "#e07b1a", "#2f6fb0"
 TAG = {"boxstyle": "circle,pad=0.15", "facecolor": "white", "edgecolor": STEEL, "linewidth": 0.6}
 FLATTEST = 0.2  # of the longest side: what is drawn flatter than that has no room for its numbers
 VIEW = {"elev": 18.0, "azim": -60.0}
 
 
+def need_plots() -> None:
+    """Make sure that pictures can be drawn, before anything is worked out for one.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+    """
+    try:
+        import matplotlib.figure  # noqa: F401  # asked for, not used
+    except ImportError:
+        raise MissingExtra("a picture", "plots") from None
+
+
+@checked
+def picture_file(path: str | Path) -> Path:
+    """The path of a picture that can be written, before anything is worked out for it.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+        InvalidSetting: Its ending is none of a picture.
+        CannotWrite: It cannot be written.
+    """
+    need_plots()
+    if Path(path).suffix.lower() not in FORMATS:
+        raise InvalidSetting(f"a picture ends in {', '.join(FORMATS)}, got {str(path)!r}")
+    return writable(path)
+
+
+@checked
 def draw(mechanism: Mechanism, workspace: Workspace | None = None, pose: PoseLike | None = None) -> Figure:
     """A picture of a mechanism, and beside it of its workspace; see ``draw_into``.
 
@@ -39,6 +70,7 @@ def draw(mechanism: Mechanism, workspace: Workspace | None = None, pose: PoseLik
     return figure
 
 
+@checked
 def draw_into(
     figure: Figure, mechanism: Mechanism, workspace: Workspace | None = None, pose: PoseLike | None = None
 ) -> None:
@@ -53,9 +85,10 @@ def draw_into(
     Raises:
         InvalidTarget: Not a pose.
     """
+    _need_figure(figure)
     unit = mechanism.unit
     scale = 1.0 / mechanism.metres
-    T = as_poses(_middle(mechanism, workspace) if pose is None else pose)[0]
+    T = one_pose(_middle(mechanism, workspace) if pose is None else pose)
     axes = figure.add_subplot(1, 2 if workspace is not None else 1, 1, projection="3d")
     _mechanism(axes, mechanism, T, scale)
     axes.set_title(f"{mechanism.name} ({mechanism.geometry.type})", fontsize=11)
@@ -69,6 +102,7 @@ def draw_into(
         _dress(axes, body.labels)
 
 
+@checked
 def draw_history(designed: Designed) -> Figure:
     """Best fitness over designs looked at.
 
@@ -87,18 +121,32 @@ def draw_history(designed: Designed) -> Figure:
     return figure
 
 
+@checked
 def save_picture(figure: Figure, path: str | Path) -> Path:
-    """Write a figure to a file; the ending says the format (.png, .svg, .pdf)."""
-    path = Path(path)
+    """Write a figure to a file; the ending says the format (.png, .svg, .pdf).
+
+    Raises:
+        InvalidSetting: Its ending is none of a picture.
+        CannotWrite: It cannot be written.
+    """
+    _need_figure(figure)
+    path = picture_file(path)
     figure.savefig(path, dpi=130)
     return path
 
 
+def _need_figure(figure: object) -> None:
+    """Raise InvalidSetting for what is no figure of matplotlib's; without matplotlib there is none."""
+    need_plots()
+    from matplotlib.figure import Figure
+
+    instance(Figure, figure=figure)
+
+
 def _figure(size: tuple[float, float]) -> Figure:
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtra("a picture", "plots") from None
+    need_plots()
+    from matplotlib.figure import Figure
+
     return Figure(figsize=size, layout="constrained")
 
 

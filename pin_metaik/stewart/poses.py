@@ -38,7 +38,7 @@ def as_poses(poses: PoseLike) -> Array:
     """
     try:
         array = np.array(poses, dtype=np.float64, order="C")
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidTarget(f"poses are pin.SE3 or 4x4 matrices, got {type(poses).__name__}") from None
     if array.ndim == 2:
         array = array[None]
@@ -52,6 +52,18 @@ def as_poses(poses: PoseLike) -> Array:
     for k in np.flatnonzero(wrong)[:1]:
         as_pose(array[k])  # says what is wrong with it
     return array
+
+
+def one_pose(pose: PoseLike) -> Array:
+    """One pose (4, 4), or the first of many.
+
+    Raises:
+        InvalidTarget: It is none, or there is none.
+    """
+    poses = as_poses(pose)
+    if not len(poses):
+        raise InvalidTarget("a pose is a pin.SE3 or a 4x4 matrix, got no pose at all")
+    return np.asarray(poses[0])
 
 
 def is_many(poses: PoseLike) -> bool:

@@ -8,9 +8,11 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+from pin_metaik.arguments import checked
 from pin_metaik.stewart.surveying import Watch
 
 
+@checked
 @contextmanager
 def progress_bar(label: str, console: Console | None = None) -> Iterator[Watch]:
     """A bar on stderr that goes away when it is done; nothing where that is no terminal.

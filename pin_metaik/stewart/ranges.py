@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from math import isfinite
 from numbers import Real
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import number
 from pin_metaik.errors import InvalidBounds
 from pin_metaik.optimize.space import Array, Box
 from pin_metaik.stewart.geometry import Geometry
@@ -159,7 +159,5 @@ def _dimensions(geometry: Geometry, limits: LegLimits) -> Dimensions:
 
 def _span(name: str, value: object) -> Span:
     if isinstance(value, Real) and not isinstance(value, bool):
-        if not isfinite(value):
-            raise InvalidBounds(f"{name} is fixed at {value}, which is not finite")
-        return float(value)
+        return float(number(name, value, InvalidBounds))
     return as_range(name, value)

@@ -64,6 +64,7 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import (
     InvalidBounds,
     InvalidGeometry,
@@ -102,6 +103,7 @@ DESIGN = (
 )
 
 
+@checked
 def read_mechanism(path: str | Path) -> Mechanism:
     """Read a mechanism from a ``.toml`` file.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.conditioning import measure
 from pin_metaik.stewart.geometry import Geometry
@@ -39,6 +40,7 @@ class Singularities:
     nu: float
 
 
+@checked
 def singularities(workspace: Workspace) -> Singularities:
     """Look for singular poses in a workspace; with fewer than six legs det J has no sign, and none cross."""
     steps = workspace.cells.steps
@@ -80,6 +82,7 @@ class Crossing:
     crosses: bool
 
 
+@checked
 def crossings(geometry: Geometry, trajectory: Trajectory) -> list[Crossing]:
     """The singular poses of a trajectory, in order of time.
 

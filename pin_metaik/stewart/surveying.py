@@ -9,6 +9,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
+from pin_metaik.interrupts import Interrupted
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.cells import Cells, cells_of, finer_cells, room
 from pin_metaik.stewart.conditioning import DEFAULT, Dexterity, best_length, measure
@@ -32,6 +34,7 @@ SPARE = 1.2
 """How many more cells than needed a finer grid aims at, so that it need not be made finer once more."""
 
 
+@checked
 def survey(
     geometry: Geometry,
     limits: LegLimits,
@@ -46,8 +49,6 @@ def survey(
     are reached, or four million poses do not suffice; ``Workspace.cells_reached`` says how many carry the figures.
     With all its ranges given, a grid is taken as it is.
 
-    Ctrl-C ends the survey early and returns what was seen, if any pose of it was reached.
-
     Args:
         geometry: The platform.
         limits: What its legs allow.
@@ -58,12 +59,16 @@ def survey(
     Raises:
         EmptyWorkspace: No pose of the grid is within the limits; it says whether that is proved for all between them.
         InvalidGeometry: The home of the limits gives a joint no axis.
+        Interrupted: Ctrl-C, once a pose was reached; its ``result`` is the workspace as far as it was seen.
     """
     where = grid or Grid()
-    if isinstance(where, Cells):
-        found, left = judged(geometry, limits, where, dexterity, watch), None
-    else:
-        found, left = explored(geometry, limits, where, dexterity, LEAST if where.open else 0, MOST, watch)
+    try:
+        if isinstance(where, Cells):
+            found, left = judged(geometry, limits, where, dexterity, watch), None
+        else:
+            found, left = explored(geometry, limits, where, dexterity, LEAST if where.open else 0, MOST, watch)
+    except Interrupted as stop:
+        raise Interrupted(with_best_length(stop.result)) from None
     if not found.reached.any():
         raise EmptyWorkspace(found.counts, left)
     return with_best_length(found)
@@ -85,12 +90,12 @@ def explored(
         within the ranges of the grid; None if it is proved that they allow nothing there.
     """
     found = judged(geometry, limits, cells_of(grid, geometry, limits), dexterity, watch)
-    if found.cells_reached >= max(least, 1) or not found.complete:
+    if found.cells_reached >= max(least, 1):
         return found, None
     box = room(grid, geometry, limits)
     if box is None or max(grid.counts) == 1:
         return found, box
-    while found.cells_reached < least and found.complete:
+    while found.cells_reached < least:
         volume = found.volume / (SPARE * least) if found.cells_reached else found.cells.volume / 8.0
         finest = float(np.prod(np.ptp(box, axis=0))) * len(found.cells.rpy) / most
         if not max(volume, finest) > 0.0:
@@ -105,7 +110,11 @@ def explored(
 def judged(
     geometry: Geometry, limits: LegLimits, cells: Cells, dexterity: Dexterity, watch: Watch | None = None
 ) -> Workspace:
-    """Cells judged; with Ctrl-C those that were looked at, if any pose of them was reached."""
+    """Cells judged.
+
+    Raises:
+        Interrupted: Ctrl-C, once a pose was reached; its ``result`` has the cells that were looked at.
+    """
     length = dexterity.length if not isinstance(dexterity.length, str) else geometry.platform_radius
     states, nu = np.zeros(cells.shape, dtype=np.int8), np.zeros(cells.shape)
     found = Workspace(geometry, limits, cells, dexterity, length, states, nu)
@@ -114,6 +123,7 @@ def judged(
     except KeyboardInterrupt:
         if not found.reached.any():
             raise
+        raise Interrupted(found) from None
     return found
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize import Metaheuristic, make
 from pin_metaik.optimize.pso import PSO
@@ -15,6 +16,7 @@ from pin_metaik.stewart.ranges import Ranges
 Index: TypeAlias = Literal["gdi", "lci"]
 
 
+@checked
 @dataclass(frozen=True)
 class DesignTask:
     """The settings of a design: maximise ``weights[0] D + weights[1] V / cube^3``.

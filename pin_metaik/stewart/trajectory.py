@@ -8,8 +8,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, checked, checked_as
 from pin_metaik.errors import InvalidTarget
-from pin_metaik.optimize.settings import whole, within
+from pin_metaik.optimize.settings import few, within
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.conditioning import DEFAULT, Dexterity, characteristic_length, measure
 from pin_metaik.stewart.geometry import Geometry
@@ -17,9 +18,10 @@ from pin_metaik.stewart.inverse import leg_lengths
 from pin_metaik.stewart.jacobian import jacobian
 from pin_metaik.stewart.limits import LegLimits, PoseState
 from pin_metaik.stewart.loading import load_kernels
-from pin_metaik.stewart.poses import PoseLike, as_poses
+from pin_metaik.stewart.poses import PoseLike, as_poses, one_pose
 
 
+@checked_as(InvalidTarget)
 @dataclass(frozen=True, eq=False)
 class Trajectory:
     """Poses of P in the base frame at ascending times.
@@ -52,26 +54,33 @@ class Trajectory:
             object.__setattr__(self, name, value)
 
     @classmethod
+    @checked
     def through(cls, times: ArrayLike, poses: PoseLike) -> Trajectory:
         """Through poses (k, 4, 4) at times (k,) in s; twists are differences between the neighbours of each pose.
 
         Raises:
             InvalidTarget: As for the class.
         """
-        at, T = np.array(times, dtype=float, ndmin=1), as_poses(poses)
+        at, T = array("the times of a trajectory", times, "k", error=InvalidTarget), as_poses(poses)
         steady = len(T) > 1 and at.shape == (len(T),) and bool((np.diff(at) > 0.0).all())
         return cls(at, T, _differences(at, T) if steady else np.zeros((len(T), 6)))  # the class says what is wrong
 
+    @checked
     def at(self, times: ArrayLike) -> Array:
         """Poses (j, 4, 4) at times (j,) in s: between two samples along the straight line and the shortest turn."""
-        t = np.clip(np.array(times, dtype=float, ndmin=1), self.times[0], self.times[-1])
+        given = array(
+            "times", np.atleast_1d(array("times", times, "...", error=InvalidTarget)), "j", error=InvalidTarget
+        )
+        t = np.clip(given, self.times[0], self.times[-1])
         after = np.clip(np.searchsorted(self.times, t, side="right"), 1, len(self.times) - 1)
         share = (t - self.times[after - 1]) / (self.times[after] - self.times[after - 1])
-        return np.stack(
-            [between(self.poses[k - 1], self.poses[k], s) for k, s in zip(after.tolist(), share.tolist(), strict=True)]
-        )
+        poses = [
+            between(self.poses[k - 1], self.poses[k], s) for k, s in zip(after.tolist(), share.tolist(), strict=True)
+        ]
+        return np.array(poses).reshape(-1, 4, 4)
 
 
+@checked
 def straight(start: PoseLike, end: PoseLike, seconds: float, samples: int = 101) -> Trajectory:
     """From rest to rest along a straight line, turning about one axis, in quintic time.
 
@@ -86,8 +95,8 @@ def straight(start: PoseLike, end: PoseLike, seconds: float, samples: int = 101)
         InvalidSetting: No time, or fewer than two samples.
     """
     within("seconds", seconds, 1e-9)
-    whole("samples", samples, 2)
-    (first,), (last,) = as_poses(start), as_poses(end)
+    few("samples", samples, 2)
+    first, last = one_pose(start), one_pose(end)
     u = np.linspace(0.0, 1.0, samples)
     s, s_dot = u**3 * (10 - 15 * u + 6 * u**2), 30 * (u - u**2) ** 2 / seconds
     turn = first[:3, :3] @ pin.log3(first[:3, :3].T @ last[:3, :3])  # rotation vector in the base frame
@@ -135,6 +144,7 @@ class Motion:
         return stroke
 
 
+@checked
 def follow(
     geometry: Geometry, trajectory: Trajectory, limits: LegLimits | None = None, dexterity: Dexterity = DEFAULT
 ) -> Motion:
@@ -155,6 +165,7 @@ def follow(
     return Motion(trajectory, leg_lengths(geometry, T), rates, nu, states, length)
 
 
+@checked
 def judge_poses(geometry: Geometry, limits: LegLimits, poses: PoseLike) -> NDArray[np.int8]:
     """A ``PoseState`` (k,) for each of the poses.
 

@@ -15,6 +15,8 @@ from collections.abc import Iterable, Sequence
 from math import pi
 from pathlib import Path
 
+from pin_metaik.arguments import checked
+from pin_metaik.output import writable
 from pin_metaik.stewart.mechanism import Mechanism
 
 MASS = 1.0  # kg
@@ -22,6 +24,7 @@ EFFORT, VELOCITY = 1000.0, 1.0  # N or N m, m/s or rad/s: URDF demands them, a m
 COLOURS = {"grey": "0.35 0.36 0.38 1", "blue": "0.2 0.45 0.75 1", "orange": "0.9 0.5 0.15 1"}
 
 
+@checked
 def to_urdf(mechanism: Mechanism) -> str:
     """URDF text of a mechanism: the same mechanism gives the same bytes."""
     geometry, limits = mechanism.geometry, mechanism.limits
@@ -61,9 +64,14 @@ def to_urdf(mechanism: Mechanism) -> str:
     return '<?xml version="1.0"?>\n' + ET.tostring(robot, encoding="unicode") + "\n"
 
 
+@checked
 def save_urdf(mechanism: Mechanism, path: str | Path) -> Path:
-    """Write the URDF of a mechanism to a file."""
-    path = Path(path)
+    """Write the URDF of a mechanism to a file.
+
+    Raises:
+        CannotWrite: It cannot be written.
+    """
+    path = writable(path)
     path.write_text(to_urdf(mechanism), encoding="utf-8", newline="\n")
     return path
 

@@ -9,7 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.errors import InvalidGeometry
+from pin_metaik.arguments import checked
+from pin_metaik.errors import InvalidGeometry, InvalidSetting
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.cells import Cells
 from pin_metaik.stewart.conditioning import Dexterity
@@ -144,11 +145,13 @@ class Workspace:
         """
         return float(self.nu[self.regular].mean()) if self.regular.any() else None
 
+    @checked
     def dexterous(self, threshold: float) -> NDArray[np.bool_]:
         """Which poses have an LCI of at least the threshold (nx, ny, nz, o)."""
         dexterous: NDArray[np.bool_] = self.regular & (self.nu >= threshold)
         return dexterous
 
+    @checked
     def dexterous_volume(self, threshold: float) -> float:
         """Volume of the positions with an LCI of at least the threshold in every orientation, m^3."""
         return float(self.dexterous(threshold).all(axis=-1).sum() * self.cells.volume)
@@ -158,20 +161,27 @@ class Workspace:
         """Positions reached in at least one orientation, m (r, 3)."""
         return self.position_of(np.argwhere(self.reached.any(axis=-1)))
 
+    @checked
     def position_of(self, index: NDArray[np.int64]) -> Array:
         """Positions (r, 3) in m of cells (r, 3 or more) given by their indices."""
         cells = self.cells
+        _indices(index, cells.shape)
         return np.column_stack((cells.xs[index[:, 0]], cells.ys[index[:, 1]], cells.zs[index[:, 2]]))
 
+    @checked
     def poses_of(self, index: NDArray[np.int64]) -> Array:
         """Poses (r, 4, 4) of the grid given by their indices (r, 4)."""
+        _indices(index, self.cells.shape, 4)
         T = np.tile(np.eye(4), (len(index), 1, 1))
         T[:, :3, 3] = self.position_of(index)
         T[:, :3, :3] = self.cells.rotations[index[:, 3]]
         return T
 
+    @checked
     def poses(self, which: NDArray[np.bool_]) -> Array:
         """Poses (r, 4, 4) of the grid where `which` (nx, ny, nz, o) is true."""
+        if which.shape != self.states.shape:
+            raise InvalidSetting(f"which poses is an array of shape {self.states.shape}, got {which.shape}")
         return self.poses_of(np.argwhere(which))
 
     @property
@@ -186,3 +196,11 @@ class Workspace:
         share = f"{self.reached.sum()} of {self.reached.size} poses reached"
         size = "at one position" if self.at_one_position else f"{1e6 * self.volume:.4g} cm3"
         return f"{self.verdict}: {gdi}, {size}, {share}"
+
+
+def _indices(index: NDArray[np.int64], shape: tuple[int, ...], columns: int = 3) -> None:
+    """Raise InvalidSetting for what are no indices (r, columns) of cells in an array of this shape."""
+    if index.ndim != 2 or not columns <= index.shape[1] <= len(shape):
+        raise InvalidSetting(f"indices of cells have shape (r, {columns}), got {index.shape}")
+    if ((index < 0) | (index >= shape[: index.shape[1]])).any():
+        raise InvalidSetting(f"indices of cells lie inside the grid of shape {shape}")

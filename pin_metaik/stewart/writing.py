@@ -9,8 +9,10 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize import ALGORITHMS, Metaheuristic, make
+from pin_metaik.output import writable
 from pin_metaik.stewart.grid import Grid
 from pin_metaik.stewart.limits import LegLimits
 from pin_metaik.stewart.mechanism import Mechanism
@@ -21,17 +23,20 @@ from pin_metaik.stewart.task import DesignTask
 DEG = ANGLES["deg"]
 
 
+@checked
 def save_mechanism(mechanism: Mechanism, path: str | Path) -> Path:
     """Write a mechanism to a ``.toml`` file; loading it gives the same mechanism, and saving that the same file.
 
     Raises:
         InvalidSetting: It is designed by a metaheuristic that has no name.
+        CannotWrite: It cannot be written.
     """
-    path = Path(path)
+    path = writable(path)
     path.write_text(to_toml(mechanism), encoding="utf-8", newline="\n")
     return path
 
 
+@checked
 def to_toml(mechanism: Mechanism) -> str:
     """TOML text of a mechanism: lengths in its unit, angles in degrees.
 

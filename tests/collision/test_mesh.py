@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from pin_metaik.collision import Mesh, MeshSize
+from pin_metaik.collision.mesh import triangles_of
 from pin_metaik.errors import InvalidGeometry
 
 CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
@@ -72,3 +73,54 @@ def test_a_mesh_in_millimetres_is_warned_of(tmp_path: Path) -> None:
 def test_arrays_that_are_no_mesh_are_refused(vertices: np.ndarray, triangles: np.ndarray | None) -> None:
     with pytest.raises(InvalidGeometry):
         Mesh(vertices, triangles)
+
+
+def test_a_file_given_for_vertices_is_told_how_to_read_it() -> None:
+    with pytest.raises(InvalidGeometry, match=r"to read a file use Mesh\.read\('b\.stl'\)"):
+        Mesh("b.stl")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("path", [3, None, {"file": "a.stl"}, "a\0b.stl", "~nobody-of-that-name/a.stl", ""])
+def test_what_is_no_path_of_a_mesh_is_refused(path: object) -> None:
+    with pytest.raises(InvalidGeometry, match="mesh"):
+        Mesh.read(path)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("scale", [0.0, -1.0, np.nan, np.inf, "0.001", None, [1.0, 1.0, 1.0], True])
+def test_what_is_no_scale_of_a_mesh_is_refused(tmp_path: Path, scale: object) -> None:
+    with pytest.raises(InvalidGeometry, match="scale"):
+        Mesh.read(write(tmp_path / "cube.obj", CORNERS, CUBE), scale)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e-3, 1.0])
+@pytest.mark.parametrize("thickness", [0.0, 1e-15, 1e-12, 1e-10, 1e-9, 1e-6])
+def test_points_that_are_nearly_flat_are_a_hull_or_an_error(size: float, thickness: float) -> None:
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        points = size * rng.standard_normal((30, 3)) * [1.0, 1.0, thickness] @ np.linalg.qr(rng.random((3, 3)))[0]
+        points = points[rng.integers(0, 30, 30)] + rng.choice([0.0, size, 1e4 * size])
+        try:
+            assert Mesh(points).geometry().num_points >= 4
+        except InvalidGeometry as error:
+            assert "in one plane" in str(error)
+
+
+def test_a_hull_encloses_its_points_and_its_faces_look_outward() -> None:
+    points = np.random.default_rng(0).standard_normal((300, 3)) * [0.3, 0.1, 0.05] + [5.0, -3.0, 1.0]
+    hull = Mesh(points).hull
+    a, b, c = (np.array(hull.points())[triangles_of(hull)[:, i]] for i in range(3))
+    normals = np.cross(b - a, c - a)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    assert (points @ normals.T - (normals * a).sum(axis=1)).max() <= 1e-12
+    assert hull.computeVolume() > 0.0
+
+
+@pytest.mark.parametrize("width", [1e-3, 0.05, 0.3])
+def test_a_solid_with_a_small_hole_is_not_its_hull(width: float) -> None:
+    dented = np.concatenate([CORNERS, [[0.5 - width, 0.5, 1.0], [0.5, 0.5 - width, 1.0], [0.5 + width, 0.5, 1.0]]])
+    dented = np.concatenate([dented, [[0.5, 0.5 + width, 1.0], [0.5, 0.5, 0.5]]])
+    rim = [(1, 5, 9), (5, 10, 9), (5, 7, 10), (7, 11, 10), (7, 3, 11), (3, 8, 11), (3, 1, 8), (1, 9, 8)]
+    hole = [(8, 9, 12), (9, 10, 12), (10, 11, 12), (11, 8, 12)]
+    sides = [face for face in CUBE.tolist() if not set(face) <= {1, 3, 5, 7}]
+    assert not Mesh(dented, np.array(sides + rim + hole)).convex
+    assert Mesh(dented[:-1], np.array(sides + rim + [(8, 9, 10), (8, 10, 11)])).convex

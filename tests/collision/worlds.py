@@ -2,12 +2,11 @@
 
 from functools import cache
 
-import coal
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
 import pin_metaik as mik
+from benchmarks.collision_truth import Truth
 from pin_metaik.collision import load_scene
 from pin_metaik.collision.simplify import Simplify
 from pin_metaik.collision.touch import random_configurations
@@ -30,27 +29,11 @@ def configurations(name: str, count: int, seed: int = 0) -> NDArray[np.float64]:
     return random_configurations(robot_of(name).model, np.random.default_rng(seed), count)
 
 
+@cache
+def _truth(world: mik.CollisionWorld) -> Truth:
+    return Truth.of(world)
+
+
 def brute_force(world: mik.CollisionWorld, q: NDArray[np.float64]) -> bool:
     """By Pinocchio and coal alone: every pair of the original geometry that the world does not exempt."""
-    robot = world.robot
-    geometry = robot.collision_model.clone()
-    for obstacle in world.obstacles:
-        geometry.addGeometryObject(pin.GeometryObject(obstacle.name, 0, 0, obstacle.pose, obstacle.shape.geometry()))
-    data, shapes = robot.model.createData(), geometry.createData()
-    pin.updateGeometryPlacements(robot.model, data, geometry, shapes, q)
-    names = [robot.model.frames[o.parentFrame].name for o in robot.collision_model.geometryObjects]
-    names += [obstacle.name for obstacle in world.obstacles]
-    objects = list(geometry.geometryObjects)
-    for j in range(len(objects)):
-        for i in range(j):
-            first, second = sorted((names[i], names[j]))
-            apart = objects[i].parentJoint != objects[j].parentJoint
-            if apart and (first, second) not in world.disabled:
-                result = coal.CollisionResult()
-                poses = [coal.Transform3s(shapes.oMg[k].rotation, shapes.oMg[k].translation) for k in (i, j)]
-                coal.collide(
-                    objects[i].geometry, poses[0], objects[j].geometry, poses[1], coal.CollisionRequest(), result
-                )
-                if result.isCollision():
-                    return True
-    return False
+    return _truth(world).least(q) <= world.margin

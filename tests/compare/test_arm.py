@@ -6,6 +6,7 @@ from pin_metaik.compare.papers import Options, Paper, reproduce
 from pin_metaik.compare.papers.arm import TRACE_POINTS, ArmCase, hybrid, of, search, thinned
 from pin_metaik.compare.papers.arm_report import angles, every_run, hybrids, summary
 from pin_metaik.compare.papers.rv7fl_setup import cases
+from pin_metaik.interrupts import kept
 from pin_metaik.optimize.gwo import GWO
 
 
@@ -44,7 +45,7 @@ def test_ctrl_c_within_a_search_ends_the_experiment_and_not_only_the_search(case
     interrupted = ArmCase(case.name, case.problem, impatient)
     jobs = [search(interrupted, "GWO", GWO(agents=30), 600, run, rng()) for run in range(5)]
     paper = Paper("p", "t", "s", 1, lambda options: jobs, lambda done, options: [done])
-    again = reproduce(paper, Options(5))
+    again = kept(lambda: reproduce(paper, Options(5)))
     assert again.done == 1  # the first of 20 generations; the second was cut short and does not count
     assert len(calls) == 30
 

@@ -13,6 +13,7 @@ from pin_metaik.compare.papers.path_planning_setup import ExactTrial, HitTrial, 
 from pin_metaik.compare.papers.trajectory_claims import claims
 from pin_metaik.compare.papers.trajectory_setup import PRINTED, Lab, NetTrial, routes, stepped
 from pin_metaik.compare.report.write import markdown
+from pin_metaik.interrupts import kept
 from pin_metaik.mobile import NOMAD_200
 from pin_metaik.mobile.motion.turn import lead_time
 
@@ -78,7 +79,7 @@ def test_ctrl_c_keeps_the_jobs_that_are_done(paper, monkeypatch):
         yield type(jobs[0])("stop", stop)
 
     monkeypatch.setattr(trajectory_setup, "QUICK", 2)
-    again = reproduce(dataclasses.replace(paper, jobs=some), Options(1, quick=True))
+    again = kept(lambda: reproduce(dataclasses.replace(paper, jobs=some), Options(1, quick=True)))
     assert again.partial
     assert again.done == 3
     assert again.sections

@@ -42,7 +42,9 @@ def test_the_report_is_made_of_what_the_jobs_returned():
 
 
 def test_an_interrupt_keeps_what_is_done_and_says_so():
-    again = reproduce(counting(lambda: 1, stop, lambda: 3), Options(1))
+    with pytest.raises(KeyboardInterrupt) as press:
+        reproduce(counting(lambda: 1, stop, lambda: 3), Options(1))
+    again = press.value.result
     assert again.sections[0].tables[0].rows == [(1,)]
     assert again.partial
     assert "PARTIAL: interrupted after 1 of 3 jobs" in str(again)

@@ -7,16 +7,22 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from pyarrow import parquet
 
+import pin_metaik as mik
 from pin_metaik.compare import METHODS as KNOWN
-from pin_metaik.compare import Suite, compare, replay
+from pin_metaik.compare import Answer, Suite, compare, read_results, replay
+from pin_metaik.compare.case import NoTask
 from pin_metaik.compare.environment import read_environment
 from pin_metaik.compare.record import Record
+from pin_metaik.compare.report.by_case import by_case
+from pin_metaik.compare.report.overview import reading
 from pin_metaik.compare.store import ROWS, read_record, read_rows
 from pin_metaik.compare.trial import generator
 from pin_metaik.errors import InvalidSetting, MetaIKError, MissingExtra, UnknownName
@@ -125,7 +131,9 @@ def test_methods_that_know_nothing_of_collisions_try_again_within_their_budget(t
 
 
 def test_ctrl_c_keeps_what_is_done(tmp_path: Path) -> None:
-    outcome = compare(Suite(("ur5",), ("random",), (Interrupted(),), targets=6), tmp_path)
+    with pytest.raises(KeyboardInterrupt) as press:
+        compare(Suite(("ur5",), ("random",), (Interrupted(),), targets=6), tmp_path)
+    outcome = press.value.result
     assert outcome.partial and outcome.done == len(read_rows(tmp_path)) == 2
     assert "interrupted: the same command goes on" in str(outcome)
 
@@ -138,7 +146,7 @@ def test_the_parquet_file_has_the_same_rows(whole: Path) -> None:
 
 def test_a_suite_and_its_environment_are_written_down(whole: Path) -> None:
     record = read_record(whole)
-    assert record == Record.of(SMALL) and record.suite() == SMALL
+    assert record == Record.of(SMALL) and record.suite(whole) == SMALL
     (session,) = read_environment(whole)
     assert {"pin-metaik", "pin", "numpy", "numba", "scipy", "joblib"} <= session["packages"].keys()
     assert session["processor"] and session["cores"] >= 1 and session["date"].startswith("20")
@@ -245,3 +253,134 @@ def test_a_cluster_that_does_not_answer_is_an_error(tmp_path: Path, monkeypatch:
     for scheduler, complaint in ((None, "--scheduler ADDRESS"), ("tcp://127.0.0.1:9", "no Dask scheduler answers")):
         with pytest.raises(InvalidSetting, match=complaint):
             compare(SMALL, tmp_path / "out", backend="dask", scheduler=scheduler)
+
+
+SMALL_ARM = ("a1", "double_pendulum", "finger_edu")
+
+
+@pytest.mark.parametrize("robot", SMALL_ARM)
+def test_a_case_that_an_arm_has_none_of_is_said_once_and_the_others_go_on(robot: str, tmp_path: Path) -> None:
+    outcome = compare(Suite((robot, "ur5"), ("singular", "random"), ("lm",), targets=2, budget=100), tmp_path)
+    assert not outcome.partial
+    absent = {line.partition(":")[0] for line in outcome.absent}
+    assert absent <= {f"{robot}/singular"}
+    assert outcome.done == outcome.planned == 2 * (4 - len(absent))
+    assert str(outcome).count("without ") == len(absent)
+    if absent:
+        report = read_results(tmp_path)
+        assert f"Not compared: {robot}/singular" in " ".join(reading(report).text)
+        with pytest.raises(InvalidSetting, match="no trial"):
+            replay(tmp_path, f"{robot}/singular/0/lm/0")
+
+
+def test_where_no_arm_has_any_of_the_cases_that_is_said_before_the_work(tmp_path: Path) -> None:
+    with pytest.raises(NoTask, match="a1/singular: no configuration of these 3 joints loses a direction"):
+        compare(Suite(("a1",), ("singular",), ("lm",), targets=2), tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_second_process_is_refused_and_a_killed_one_leaves_no_lock(tmp_path: Path) -> None:
+    holder = "import sys, time; from pathlib import Path; from pin_metaik.compare.lock import locked\n"
+    holder += f"with locked(Path({str(tmp_path)!r}), 'comparison'): print('held', flush=True); time.sleep(60)"
+    running = subprocess.Popen([sys.executable, "-c", holder], env=ENVIRONMENT, stdout=subprocess.PIPE)
+    try:
+        assert running.stdout is not None and running.stdout.readline() == b"held\n"
+        with pytest.raises(InvalidSetting, match=rf"another process \({running.pid}\) works on the comparison"):
+            compare(SMALL, tmp_path)
+    finally:
+        running.kill()
+        running.wait()
+    outcome = compare(Suite(("ur5",), ("random",), ("lm",), targets=1, budget=50), tmp_path)
+    assert outcome.done == 1
+    assert not list(tmp_path.glob(".*.lock"))
+
+
+def test_a_comparison_of_ones_own_robot_is_run_again_in_another_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here, there = tmp_path / "here", tmp_path / "there"
+    here.mkdir()
+    (here / "mine.urdf").write_text(mik.load_robot("rv7fl").urdf)
+    (here / "mine.toml").write_bytes(mik.load_robot("cobra600").source.read_bytes())
+    monkeypatch.chdir(here)
+    compare(Suite(("mine.urdf", "mine.toml", "ur5"), ("random",), ("lm",), targets=1, budget=50), Path("out"))
+    trials = [trial.name for trial in read_rows(here / "out")]
+    (here / "out").rename(there)
+    (here / "mine.urdf").unlink()
+    (here / "mine.toml").unlink()
+    monkeypatch.chdir("/")
+    assert len(trials) == 3
+    assert all(replay(there, trial).same for trial in trials)
+
+
+def test_meshes_travel_where_a_case_has_a_world(tmp_path: Path) -> None:
+    robot = mik.load_robot("ur5")
+    meshes = {path for piece in robot.collision_model.geometryObjects if (path := Path(piece.meshPath)).is_file()}
+    package = tmp_path / "here" / "example-robot-data"
+    for mesh in meshes:
+        tail = mesh.as_posix().partition("/example-robot-data/")[2]
+        (package / tail).parent.mkdir(parents=True, exist_ok=True)
+        (package / tail).write_bytes(mesh.read_bytes())
+    own = tmp_path / "here" / "mine.urdf"
+    own.write_text(robot.urdf)
+    compare(Suite((str(own),), ("cluttered",), ("default",), targets=1, budget=500), tmp_path / "out")
+    (trial,) = read_rows(tmp_path / "out")
+    assert trial.error is None
+    (tmp_path / "here").rename(tmp_path / "gone")
+    assert replay(tmp_path / "out", trial.name).same
+
+
+def test_rows_of_another_robot_of_the_same_name_are_not_mixed(tmp_path: Path) -> None:
+    own, urdf = tmp_path / "mine.urdf", mik.load_robot("rv7fl").urdf
+    suite = Suite(("ur5",), ("random",), ("lm",), targets=1, budget=50)
+    own.write_text(urdf)
+    compare(replace(suite, robots=(str(own),)), tmp_path / "out")
+    own.write_text(urdf.replace("<robot", "<!-- measured anew --><robot", 1))
+    with pytest.raises(InvalidSetting, match="rows of another 'rv7fl'"):
+        compare(replace(suite, robots=(str(own),)), tmp_path / "out")
+
+
+def test_folders_from_before_robots_travelled_are_read(whole: Path, tmp_path: Path) -> None:
+    values = read_record(whole).to_json()
+    del values["files"], values["absent"]
+    assert Record.from_json(values) == read_record(whole)
+
+
+def test_a_trial_that_was_never_asked_for_is_named(whole: Path) -> None:
+    with pytest.raises(InvalidSetting, match="targets of this comparison are 0 to 2, got 3"):
+        replay(whole, "ur5/path/3/gwo/0")
+    with pytest.raises(InvalidSetting, match="seeds of this comparison are 0 to 1, got 2"):
+        replay(whole, "ur5/path/0/gwo/2")
+    lines = list(replay(whole, "ur5/path/2/gwo/0").lines())
+    assert lines[1].startswith("target 2, pose 1: position [")
+    assert sum("rotation" in line for line in lines) == 20
+
+
+def test_the_error_that_most_rows_have_is_said(tmp_path: Path) -> None:
+    outcome = compare(Suite(("ur5",), (IMPOSSIBLE,), ("dls", "lm"), targets=2), tmp_path)
+    assert "4 raised an error, most often RuntimeError: no such pose" in str(outcome)
+    results = read_results(tmp_path)
+    assert "4 of 4 raised RuntimeError: no such pose" in " ".join(by_case(results, results.cases["impossible"]).text)
+
+
+class Swallowing:
+    """Catches whatever is raised while it works, Ctrl-C included, and answers all the same."""
+
+    name = "swallowing"
+
+    def __init__(self) -> None:
+        self.calls = 0
+
+    def solve(self, problem: mik.IKProblem, x0: np.ndarray, budget: int, rng: np.random.Generator) -> Answer:
+        self.calls += 1
+        with suppress(BaseException):
+            if self.calls == 4:  # the first call is for warming up
+                os.kill(os.getpid(), signal.SIGINT)
+                time.sleep(1.0)
+        return Answer(x0, False, 1)
+
+
+def test_a_method_that_swallows_ctrl_c_ends_the_comparison_and_leaves_no_row(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        compare(Suite(("ur5",), ("random",), (Swallowing(),), targets=6), tmp_path)
+    assert len(read_rows(tmp_path)) == 2

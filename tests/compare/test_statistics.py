@@ -1,8 +1,11 @@
 """Every statistic on data whose answer is printed somewhere, or can be counted on one's fingers."""
 
+import itertools
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy import stats
 
 from pin_metaik.compare.statistics import compare_all, compare_pairs, ecdf, friedman, holm, signed_rank, wilson
 
@@ -85,3 +88,24 @@ def test_all_pairs_are_adjusted_together() -> None:
     assert_allclose([pair.ratio for pair in pairs], [1 / 2, 1 / 3, 2 / 3])
     assert all(pair.significant and pair.worse == 0 for pair in pairs)
     assert_allclose([pair.adjusted for pair in pairs], holm([pair.p for pair in pairs]))
+
+
+@pytest.mark.parametrize("digits", [0, 3])
+def test_small_signed_rank_tests_count_every_choice_of_signs_also_with_ties(digits: int) -> None:
+    rng = np.random.default_rng(0)
+    for n in range(1, 11):
+        d = rng.normal(0.5, 2.0, n).round(digits)
+        d = d[d != 0.0]
+        ranks = stats.rankdata(np.abs(d))
+        sums = np.array([ranks @ signs for signs in itertools.product((0, 1), repeat=len(d))])
+        tails = (sums <= ranks[d > 0].sum()).mean(), (sums >= ranks[d > 0].sum()).mean()
+        assert_allclose(signed_rank(d), min(1.0, 2.0 * min(tails)), atol=1e-12)
+
+
+def test_large_signed_rank_tests_are_those_of_scipy() -> None:
+    rng = np.random.default_rng(0)
+    d = rng.normal(0.2, 1.0, 50)
+    assert_allclose(signed_rank(d), stats.wilcoxon(d, method="exact").pvalue, rtol=1e-9)
+    for digits in (1, 8):
+        d = rng.normal(0.2, 1.0, 300).round(digits)
+        assert_allclose(signed_rank(d), stats.wilcoxon(d[d != 0.0], method="approx").pvalue, rtol=1e-9)

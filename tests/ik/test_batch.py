@@ -110,14 +110,12 @@ def test_a_batch_in_a_world_is_what_each_target_gets_alone_there() -> None:
         mik.solve_ik_batch(chain_of("panda"), poses, world=world)
 
 
-def test_results_with_a_world_are_pickled() -> None:
+def test_a_world_comes_out_of_a_pickle_as_it_was() -> None:
     robot = mik.load_robot("ur5")
     chain, world = mik.Chain(robot.model, robot.frame), mik.CollisionWorld(robot, load_scene("table"))
-    result = mik.solve_ik(chain, [0.3, 0.3, 0.6], world=world)
-    again = pickle.loads(pickle.dumps(result))
-    assert again.success and again.verify()
+    again = pickle.loads(pickle.dumps(world))
     Q = chain.q(chain.box.sample(np.random.default_rng(0), 200))
-    assert_array_equal(again.world.in_collision_batch(Q), world.in_collision_batch(Q))
+    assert_array_equal(again.in_collision_batch(Q), world.in_collision_batch(Q))
 
 
 @pytest.mark.parametrize("workers", [1, 2, 4])

@@ -203,17 +203,6 @@ def test_time_ends_a_search_and_is_called_stopped() -> None:
         assert result.seconds < 1.0
 
 
-def test_ctrl_c_ends_a_search_with_the_best_so_far() -> None:
-    class Interrupted:
-        def refine(self, problem: mik.IKProblem, starts: np.ndarray, evaluations: int) -> mik.Refinement:
-            raise KeyboardInterrupt
-
-    chain = chain_of("panda")
-    result = mik.solve_ik(chain, [0.4, 0.1, 0.5], solver=mik.IKSolver(None, Interrupted()))
-    assert result.status is mik.IKStatus.STOPPED
-    assert chain.limits.contains(result.x)
-
-
 def test_the_trace_is_there_when_asked_for() -> None:
     chain = chain_of("ur5")
     goal = [0.3, 0.3, 0.4]
@@ -250,5 +239,5 @@ def test_a_pose_may_come_as_any_array_of_numbers() -> None:
     assert_allclose(result.target.homogeneous, pose, atol=1e-15)
     assert result.verify()
     assert mik.solve_ik(chain, pose.astype(np.float32)).success
-    with pytest.raises(InvalidConfiguration, match="6 numbers, got 'home'"):
+    with pytest.raises(InvalidConfiguration, match=r"numbers of shape \(6,\), got 'home'"):
         mik.solve_ik(chain, pose, "home")

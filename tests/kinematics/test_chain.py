@@ -68,6 +68,22 @@ def test_mimic_joints_follow_as_scaled_copies() -> None:
     assert_allclose(mik.solve_ik(chain, goal).x, [0.4], atol=1e-6)
 
 
+def test_limits_of_a_joint_that_follows_bind_the_one_it_follows() -> None:
+    model = pin.buildModelFromXML(MIMIC, True)
+    chain = mik.Chain(model, "d", limits={"two": (-0.5, 0.9), "three": (-0.2, 0.9)})  # -2 one + 0.3, and 0.5 one
+    assert_allclose([chain.limits.lower, chain.limits.upper], [[-0.3], [0.4]])
+    for x in chain.box.sample(np.random.default_rng(0), 20):
+        assert mik.solve_ik(chain, chain.placements(chain.q(x))[0]).success
+    beyond = chain.placements(chain.q([0.6]))[0]
+    assert not mik.solve_ik(chain, beyond).success
+    both = mik.Chain(model, "d", limits={"one": (0.0, 0.1), "two": (-0.5, 0.9)})
+    assert_allclose([both.limits.lower, both.limits.upper], [[0.0], [0.1]])
+    with pytest.raises(InvalidBounds, match=r"'two' is at -2 'one' \+ 0\.3: its limits .* leave no room to 'one'"):
+        mik.Chain(model, "d", limits={"two": (2.5, 2.9)})
+    with pytest.raises(InvalidBounds, match=r"'two' has its lower limit 1\.0 above"):
+        mik.Chain(model, "d", limits={"two": (1.0, 0.0)})
+
+
 def test_locked_joints_stay_at_the_reference() -> None:
     model = mik.load_robot("panda").model
     reference = pin.neutral(model)

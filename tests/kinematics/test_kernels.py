@@ -6,6 +6,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import pin_metaik as mik
+from pin_metaik.kinematics.paths import turned_to_z
 from tests.robots_under_test import ARMS, CATALOGUE, chain_of
 
 EQUAL = 1e-12  # a dozen 3x3 products of entries of order one, and lengths of order a metre
@@ -18,6 +19,38 @@ def test_population_poses_equal_pinocchio(name: str) -> None:
     scale = 1.0 if name != "puma_offset" else 60.0  # its lengths are tens of units
     for pose, x in zip(chain.poses(X)[:, 0], X, strict=True):
         assert_allclose(pose, chain.placements(chain.q(x))[0].homogeneous, atol=EQUAL * scale)
+
+
+def axes(count: int) -> np.ndarray:
+    """Unit axes (count, 3): any, and from 1e-12 to 1e-1 beside each way along each of x, y and z."""
+    rng = np.random.default_rng(5)
+    axes = rng.standard_normal((count, 3))
+    beside = np.repeat(np.concatenate([np.eye(3), -np.eye(3)]), count // 12, axis=0)
+    axes[: len(beside)] = beside + 10.0 ** rng.uniform(-12, -1, (len(beside), 1)) * axes[: len(beside)]
+    axes[:6] = [*np.eye(3), *-np.eye(3)]
+    return axes / np.linalg.norm(axes, axis=1, keepdims=True)
+
+
+@pytest.mark.parametrize("kind", [pin.JointModelRevoluteUnaligned, pin.JointModelPrismaticUnaligned])
+def test_poses_equal_pinocchio_whatever_the_axis(kind: type) -> None:
+    rng = np.random.default_rng(6)
+    for first, second in axes(1200).reshape(-1, 2, 3):
+        model = pin.Model()
+        one = model.addJoint(0, kind(first), pin.SE3.Random(), "one")
+        two = model.addJoint(one, pin.JointModelRevoluteUnaligned(second), pin.SE3.Random(), "two")
+        model.addFrame(pin.Frame("tip", two, 0, pin.SE3.Random(), pin.FrameType.OP_FRAME))
+        chain = mik.Chain(model, "tip")
+        for x in rng.uniform(-3.0, 3.0, (2, 2)):
+            expected = chain.placements(chain.q(x))[0].homogeneous
+            assert_allclose(chain.poses(x)[0, 0], expected, atol=2e-14)  # a dozen products of entries up to 4
+
+
+def test_a_turn_to_an_axis_is_orthonormal_to_the_last_digit() -> None:
+    for axis in axes(6000):
+        turn = turned_to_z(axis).rotation
+        assert_allclose(turn.T @ turn, np.eye(3), atol=1e-15)
+        assert_allclose(turn[:, 2], axis, atol=1e-15)
+        assert np.linalg.det(turn) > 0.0
 
 
 @pytest.mark.parametrize("name", CATALOGUE + ARMS)

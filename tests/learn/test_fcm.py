@@ -85,12 +85,14 @@ def test_the_same_seed_gives_the_same_centres_and_a_run_can_go_on():
     assert_allclose(rest.centres, fuzzy_c_means(Z, 8, iterations=20, rng=1, tolerance=0).centres, atol=1e-12)
 
 
-def test_ctrl_c_keeps_the_centres_so_far():
+def test_ctrl_c_goes_through_with_the_centres_so_far():
     def stop(iteration, J):
         if iteration == 3:
             raise KeyboardInterrupt
 
-    found = fuzzy_c_means(np.random.default_rng(0).random((100, 2)), 5, callback=stop)
+    with pytest.raises(KeyboardInterrupt) as press:
+        fuzzy_c_means(np.random.default_rng(0).random((100, 2)), 5, callback=stop)
+    found = press.value.result
     assert found.interrupted
     assert len(found.objective) == 3
 

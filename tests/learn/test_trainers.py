@@ -29,14 +29,16 @@ def test_every_trainer_learns_and_repeats_itself(trainer):
 
 
 @pytest.mark.parametrize("trainer", TRAINERS)
-def test_ctrl_c_keeps_the_best_weights_so_far(trainer):
+def test_ctrl_c_goes_through_with_the_best_weights_so_far(trainer):
     X, y = wave()
 
     def stop(iteration, mse):
         if iteration == 20:
             raise KeyboardInterrupt
 
-    model = fit(X, y, (5,), trainer, 500, callback=stop)
+    with pytest.raises(KeyboardInterrupt) as press:
+        fit(X, y, (5,), trainer, 500, callback=stop)
+    model = press.value.result
     assert model.training.interrupted
     assert model.training.iterations == 20
     assert np.isfinite(model.predict(X)).all()

@@ -100,7 +100,7 @@ def test_without_shapely_the_extra_is_named():
     script = "import sys; sys.modules['shapely'] = None; import pin_metaik; import pin_metaik.mobile"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert "MissingExtra: planning for mobile robots needs an optional dependency: pip install" in done.stderr
-    assert "pin-metaik[mobile]" in done.stderr
+    assert "[mobile]" in done.stderr
 
 
 def test_the_package_and_its_command_line_do_not_import_shapely():

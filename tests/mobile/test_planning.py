@@ -102,12 +102,14 @@ def test_a_search_keeps_the_robots_clearance():
     assert plan.gap < 0.05
 
 
-def test_an_interrupted_search_keeps_its_best():
+def test_ctrl_c_goes_through_with_the_best_plan_so_far():
     def stop(search):
         if search.run.evaluations >= 500:
             raise KeyboardInterrupt
 
-    plan = plan_path(load_scene("ten_obstacles"), "pso", callback=stop)
+    with pytest.raises(KeyboardInterrupt) as press:
+        plan_path(load_scene("ten_obstacles"), "pso", callback=stop)
+    plan = press.value.result
     assert plan.interrupted
     assert 500 <= plan.evaluations < 5000
     assert np.isfinite(plan.cost)

@@ -146,7 +146,9 @@ def test_an_interrupted_search_is_driven_with_its_best():
         if search.generations == 5:
             raise KeyboardInterrupt
 
-    plan = plan_trajectory(B, method="de", callback=stop)
+    with pytest.raises(KeyboardInterrupt) as press:
+        plan_trajectory(B, method="de", callback=stop)
+    plan = press.value.result
     assert plan.interrupted
     assert plan.success
     assert plan.time <= plan.stop_and_turn

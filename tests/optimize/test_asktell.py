@@ -21,7 +21,7 @@ def test_asking_twice_or_telling_first_is_refused():
 def test_costs_of_the_wrong_length_may_be_told_again():
     search = AskTell(BOX, "gwo")
     X = search.ask()
-    with pytest.raises(InvalidSetting, match=r"shape \(29,\) for points of shape \(30, 2\)"):
+    with pytest.raises(InvalidSetting, match=r"costs: expected shape \(30,\), got \(29,\)"):
         search.tell(np.zeros(29))
     search.tell(np.square(X).sum(axis=1))
     assert search.run.evaluations == 30

@@ -68,7 +68,7 @@ def test_a_population_of_the_wrong_shape_is_told_so(population):
 
 @pytest.mark.parametrize("costs", [lambda X: 0.0, lambda X: X, lambda X: np.zeros((len(X), 1)), lambda X: [1.0]])
 def test_costs_of_the_wrong_shape_are_told_so(costs):
-    with pytest.raises(InvalidSetting, match=r"points of shape \(30, 2\): expected \(k,\)"):
+    with pytest.raises(InvalidSetting, match=r"costs: expected shape \(30,\)"):
         minimize(costs, BOX, "gwo", Budget(100))
 
 
@@ -103,7 +103,7 @@ def test_the_number_of_points_to_keep_is_at_least_one(keep):
         minimize(sphere, BOX, "gwo", Budget(10), keep=keep)
 
 
-def test_ctrl_c_returns_the_best_so_far():
+def test_ctrl_c_goes_through_with_the_best_so_far():
     calls = []
 
     def impatient(X):
@@ -112,7 +112,9 @@ def test_ctrl_c_returns_the_best_so_far():
             raise KeyboardInterrupt
         return sphere(X)
 
-    result = minimize(impatient, BOX, "gwo", Budget(1000))
+    with pytest.raises(KeyboardInterrupt) as press:
+        minimize(impatient, BOX, "gwo", Budget(1000))
+    result = press.value.result
     assert result.status is Status.INTERRUPTED
     assert result.evaluations == 60
     assert result.cost == min(sphere(X).min() for X in calls[:2])

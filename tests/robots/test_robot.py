@@ -1,3 +1,4 @@
+import pickle
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import pytest
 
 from pin_metaik.errors import InvalidBounds, InvalidModel, InvalidTable, UnknownName
 from pin_metaik.robots import load_robot, robot_names
+from pin_metaik.robots.description import description_of
 from pin_metaik.robots.library import LEFT_OUT, TIPS, catalogue, example_robots
 
 NAMES = [*catalogue(), *example_robots()]
@@ -127,6 +129,20 @@ def test_meshes_are_read_when_asked_for_and_kept(name):
     assert robot.collision_model is robot.collision_model
     assert "visual_model" not in vars(robot)
     assert robot.visual_model.ngeoms > 0
+
+
+@pytest.mark.parametrize("free_flyer", [False, True])
+def test_a_robot_is_made_again_from_its_description_which_pickles(free_flyer):
+    robot = load_robot("panda", free_flyer=free_flyer)
+    assert description_of(robot.model) == robot.description
+    assert description_of(pin.Model()) is None
+    again = pickle.loads(pickle.dumps(robot.description)).model()
+    assert again == robot.model
+    q = pin.randomConfiguration(again, np.full(again.nq, -1.0), np.full(again.nq, 1.0))
+    there, here = pin.Data(again), pin.Data(robot.model)
+    pin.forwardKinematics(again, there, q)
+    pin.forwardKinematics(robot.model, here, q)
+    np.testing.assert_array_equal(there.oMi[again.njoints - 1], here.oMi[again.njoints - 1])
 
 
 def test_a_robot_prints_in_one_line():
@@ -282,5 +298,5 @@ def test_whatever_is_listed_can_be_loaded_as_it_is_listed() -> None:
     listed = robot_names()
     first, last = load_robot(listed[0]), load_robot(listed[-1])
     assert (first.name, last.name) == (listed[0].name, listed[-1].name)
-    with pytest.raises(InvalidModel, match="a name or a path, got 7"):
+    with pytest.raises(InvalidModel, match="name: expected a text or a path or a RobotName, got 7"):
         load_robot(7)  # type: ignore[arg-type]

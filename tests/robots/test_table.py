@@ -84,7 +84,7 @@ def test_parameters_can_be_replaced_in_the_units_of_the_table(write):
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, True, None, [1]])
 def test_a_parameter_must_be_a_finite_number(write, value):
-    with pytest.raises(InvalidTable, match="parameters: l1"):
+    with pytest.raises(InvalidTable, match=r"parameters: .*l1"):
         read_table(write(TABLE), {"l1": value})
 
 

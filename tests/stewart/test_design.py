@@ -169,12 +169,14 @@ def test_the_least_workspace_keeps_dexterous_specks_out():
     assert found.score.workspace >= 0.08
 
 
-def test_ctrl_c_returns_the_best_design_so_far():
+def test_ctrl_c_goes_through_with_the_best_design_so_far():
     def press(done, total):
         if done >= 240:
             raise KeyboardInterrupt
 
-    found = design(stroke(50), watch=press)
+    with pytest.raises(KeyboardInterrupt) as stop:
+        design(stroke(50), watch=press)
+    found = stop.value.result
     assert found.interrupted
     assert found.success
     assert found.search.evaluations == 240
@@ -199,14 +201,14 @@ def test_legs_without_stroke_need_a_cube():
         ({"index": "gci"}, InvalidSetting, "index must be one of 'gdi', 'lci'"),
         ({"weights": (0, 0)}, InvalidSetting, "one of the weights is above zero"),
         ({"weights": (-1, 2)}, InvalidSetting, "a weight must be a number from 0"),
-        ({"weights": 3}, InvalidSetting, "weights are two numbers"),
+        ({"weights": 3}, InvalidSetting, "weights: expected two values, each a number"),
         ({"threshold": 1.5}, InvalidSetting, "threshold"),
         ({"joint_gap": -1}, InvalidSetting, "joint_gap"),
         ({"least_workspace": -0.1}, InvalidSetting, "least_workspace"),
         ({"cube": 0.0}, InvalidSetting, "cube is a length above zero"),
         ({"evaluations": 0}, InvalidSetting, "evaluations"),
         ({"seed": -1}, InvalidSetting, "seed"),
-        ({"from_current": "yes"}, InvalidSetting, "from_current is True or False"),
+        ({"from_current": "yes"}, InvalidSetting, "from_current: expected True or False"),
         ({"algorithm": "psa"}, UnknownName, "no metaheuristic named 'psa'; did you mean 'pso'"),
     ],
 )

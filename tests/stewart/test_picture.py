@@ -63,5 +63,5 @@ def test_without_matplotlib_the_extra_is_named(monkeypatch):
         return real(name, *args, **kwargs)
 
     monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(MissingExtra, match=r"a picture needs .*pin-metaik\[plots\]"):
+    with pytest.raises(MissingExtra, match=r"a picture needs .*\[plots\]"):
         draw(reference())

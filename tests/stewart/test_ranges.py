@@ -33,7 +33,7 @@ def test_a_platform_has_its_point_among_the_variables():
     [
         ({"base_radius": (0.2, 0.1)}, "range of base_radius is two finite numbers, the lower first"),
         ({"base_radius": (0.0, 0.1)}, "base_radius is above zero, its range begins at 0 m"),
-        ({"shortest": np.nan}, "shortest is fixed at nan"),
+        ({"shortest": np.nan}, "shortest is a finite number, got nan"),
         ({"base_angles": 1.0}, "one value or range for each joint"),
         ({"base_angles": ((1.0, 2.0, 3.0),)}, "range of base_angles is two numbers"),
         ({"longest": "long"}, "range of longest is two numbers"),

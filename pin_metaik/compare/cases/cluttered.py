@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pin_metaik.collision import CollisionWorld, load_scene
-from pin_metaik.compare.case import Case, Task
+from pin_metaik.compare.case import Case, NoTask, Task
 from pin_metaik.kinematics import Chain
 from pin_metaik.robots import Robot
 
@@ -23,7 +23,7 @@ def draw(chain: Chain, rng: np.random.Generator) -> Task:
     """A pose with the tip inside the shelf.
 
     Raises:
-        RuntimeError: The arm does not get there.
+        NoTask: The arm does not get there.
     """
     for _ in range(BATCHES):
         X = chain.box.sample(rng, BATCH)
@@ -31,7 +31,7 @@ def draw(chain: Chain, rng: np.random.Generator) -> Task:
         inside = np.flatnonzero(((tips > LOWER) & (tips < UPPER)).all(axis=1))
         if len(inside):
             return Task.at(chain, X[inside[:1]])
-    raise RuntimeError(f"none of {BATCH * BATCHES:,} random configurations has its tip in the shelf")
+    raise NoTask(f"none of {BATCH * BATCHES:,} random configurations has its tip in the shelf")
 
 
 CLUTTERED = Case(

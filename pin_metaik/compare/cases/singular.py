@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.compare.case import Case, Task
+from pin_metaik.compare.case import Case, NoTask, Task
 from pin_metaik.compare.cases.jacobians import jacobians
 from pin_metaik.kinematics import Chain
 
 SINGULAR = 1e-3  # smallest singular value of the frame's Jacobian (m and rad alike)
 SWEEPS, LARGEST = 30, 0.5  # steps from one start, and the longest (rad or m)
+PATIENCE = 256  # starts in a row without a singularity before there is none
 
 
 def singular(chain: Chain, count: int, rng: np.random.Generator, pool: int = 64) -> NDArray[np.float64]:
@@ -24,16 +25,26 @@ def singular(chain: Chain, count: int, rng: np.random.Generator, pool: int = 64)
         count: How many.
         rng: Where starts come from.
         pool: Starts that are tried at once at least.
+
+    Raises:
+        NoTask: The arm has no singular configuration, as far as 256 starts can tell.
     """
     least = min(6, chain.n) - 1
     found = np.empty((0, chain.n))
+    barren = 0  # starts in a row that led to none
     while len(found) < count:
+        if barren >= PATIENCE:
+            raise NoTask(
+                f"no configuration of these {chain.n} joints loses a direction: {barren} random starts led to none"
+            )
         X = chain.box.sample(rng, max(pool, 2 * (count - len(found))))
+        barren += len(X)
         for _ in range(SWEEPS):
             A = tall(jacobians(chain, X))  # (k, m, least + 1)
             _, sigma, Vt = np.linalg.svd(A, full_matrices=False)
             done = sigma[:, least] < SINGULAR
             found = np.concatenate((found, X[done]))
+            barren = 0 if done.any() else barren
             X, A, u = X[~done], A[~done], Vt[~done, least]
             if not len(X) or len(found) >= count:
                 break

@@ -9,16 +9,13 @@ from pin_metaik.errors import UnknownName
 from pin_metaik.ik import REFINERS
 from pin_metaik.optimize import ALGORITHMS
 
-ALIASES = {"lm": "lm_chan"}
-REFINEMENTS = {name: name for name in REFINERS} | ALIASES
-
 METHODS: dict[str, Method] = {
     "default": Default("default"),
     "default_nearest": Default("default_nearest", "nearest"),
-    **{name: Search(name, None, refiner, starts=1) for name, refiner in REFINEMENTS.items()},
-    **{f"{name}+restarts": Search(f"{name}+restarts", None, refiner) for name, refiner in REFINEMENTS.items()},
+    **{name: Search(name, None, name, starts=1) for name in REFINERS},
+    **{f"{name}+restarts": Search(f"{name}+restarts", None, name) for name in REFINERS},
     **{name: Search(name, name) for name in ALGORITHMS},
-    **{f"{a}+{name}": Search(f"{a}+{name}", a, refiner) for a in ALGORITHMS for name, refiner in REFINEMENTS.items()},
+    **{f"{a}+{name}": Search(f"{a}+{name}", a, name) for a in ALGORITHMS for name in REFINERS},
     **PEERS,
 }
 
@@ -33,8 +30,8 @@ def named(name: str) -> Method:
     """
     seeder, at, rest = name.partition(ROUND)
     size, _, refiner = rest.partition("+")
-    if at and size.isdecimal() and seeder in ALGORITHMS and refiner in REFINEMENTS:
-        return Rounds(name, seeder, REFINEMENTS[refiner], int(size))
+    if at and size.isdecimal() and seeder in ALGORITHMS and refiner in REFINERS:
+        return Rounds(name, seeder, refiner, int(size))
     if name not in METHODS:
         raise UnknownName("method", name, METHODS)
     return METHODS[name]

@@ -9,6 +9,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.cost import price_of, steps_within
 from pin_metaik.compare.method import Answer
 from pin_metaik.compare.methods.priced import Priced
@@ -16,10 +17,11 @@ from pin_metaik.ik import IKProblem, IKResult, IKSolver, IKStatus, Refiner, solv
 from pin_metaik.ik.ledger import Ledger
 from pin_metaik.ik.refine import make_refiner
 from pin_metaik.ik.solver import ELITE
-from pin_metaik.optimize import Budget, Metaheuristic, Status, make, minimize
+from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
 from pin_metaik.optimize.settings import whole
 
 
+@checked
 @dataclass(frozen=True)
 class Search:
     """Starts or a metaheuristic, then a refiner, as ``IKSolver`` combines them.
@@ -42,6 +44,7 @@ class Search:
         refiner = None if self.refiner is None else Priced(make_refiner(self.refiner))
         return IKSolver(self.seeder, refiner, starts=self.starts, trace=refiner is None)
 
+    @checked
     def solve(self, problem: IKProblem, x0: NDArray[np.float64], budget: int, rng: np.random.Generator) -> Answer:
         """Search within the budget."""
         solver = replace(self.solver, budget=Budget(evaluations=budget))
@@ -102,8 +105,6 @@ class Rounds:
         while not ledger.over() and problem.gap == 0.0:
             allowed = Budget(evaluations=min(self.round, ledger.left()), target=problem.good_enough)
             found = minimize(problem.costs, problem.box, self.seeder, allowed, rng, seeds=seeds, keep=ELITE)
-            if found.status is Status.INTERRUPTED:
-                raise KeyboardInterrupt
             ledger.add_search(found)
             if not ledger.over():
                 ledger.add(refiner.refine(problem, found.elite, ledger.left()))
@@ -113,11 +114,5 @@ class Rounds:
 
 
 def answer(result: IKResult) -> Answer:
-    """A result as an answer.
-
-    Raises:
-        KeyboardInterrupt: If Ctrl-C ended the search, which keeps it for itself.
-    """
-    if result.status is IKStatus.STOPPED:
-        raise KeyboardInterrupt
+    """A result as an answer."""
     return Answer(result.x, result.success, result.evaluations, str(result.status), result.trace)

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.compare.papers.paper import Job
-from pin_metaik.ik import IKProblem, IKSolver, IKStatus
-from pin_metaik.optimize import Budget, Metaheuristic, Status, minimize
+from pin_metaik.ik import IKProblem, IKSolver
+from pin_metaik.optimize import Budget, Metaheuristic, minimize
 
 Array = NDArray[np.float64]
 
@@ -69,8 +69,6 @@ def search(
         began = process_time()
         found = minimize(case.objective, case.problem.box, algorithm, Budget(evaluations=budget), rng, trace=True)
         seconds = process_time() - began
-        if found.status is Status.INTERRUPTED:
-            raise KeyboardInterrupt
         trace = thinned(found.trace) if found.trace is not None else None
         return Trial(case.name, method, budget, run, found.cost, found.x, found.evaluations, seconds, trace)
 
@@ -87,8 +85,6 @@ def hybrid(
         began = process_time()
         result = solver.solve(case.problem, rng=rng)
         seconds = process_time() - began
-        if result.status is IKStatus.STOPPED:
-            raise KeyboardInterrupt
         cost = float(case.objective(result.x[None])[0])
         return Trial(case.name, refined(method), budget, run, cost, result.x, result.evaluations, seconds)
 

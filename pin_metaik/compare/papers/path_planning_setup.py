@@ -142,8 +142,6 @@ def search(
             problem, setting.algorithm(method), fitness=fitness, via=setting.via, budget=budget, rng=rng, trace=True
         )
         took = process_time() - began
-        if plan.interrupted:
-            raise KeyboardInterrupt
         trace = np.empty((0, 2)) if plan.trace is None else plan.trace
         found = (plan.cost, plan.length, plan.collision_free, plan.gap, took, plan.path.points, trace)
         return PathTrial(name, method, fitness, run, *found)

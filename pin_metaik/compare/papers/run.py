@@ -1,4 +1,4 @@
-"""Running a paper's jobs under a progress bar; Ctrl-C keeps those that are done."""
+"""Running a paper's jobs under a progress bar; Ctrl-C goes through with those that are done."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from rich.table import Column
 
 from pin_metaik.compare.papers.paper import AnyPaper, Options
 from pin_metaik.compare.report import Section
+from pin_metaik.interrupts import Interrupted
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,9 @@ def reproduce(paper: AnyPaper, options: Options, console: Console | None = None)
         paper: The paper.
         options: How much of it to run.
         console: Where to show a progress bar; nowhere if None.
+
+    Raises:
+        Interrupted: Ctrl-C; its ``result`` reports on the jobs that are done.
     """
     began = perf_counter()
     jobs = list(paper.jobs(options))
@@ -62,6 +66,10 @@ def reproduce(paper: AnyPaper, options: Options, console: Console | None = None)
     bar = Progress(
         *columns, console=console or Console(quiet=True), transient=True, disable=console is None, expand=True
     )
+
+    def again() -> Reproduction:
+        return Reproduction(paper, options, paper.sections(done, options), len(done), len(jobs), perf_counter() - began)
+
     try:
         with bar:
             task = bar.add_task(paper.name, total=sum(job.size for job in jobs))
@@ -70,5 +78,5 @@ def reproduce(paper: AnyPaper, options: Options, console: Console | None = None)
                 done.append(job.work())
                 bar.advance(task, job.size)
     except KeyboardInterrupt:
-        pass  # the report says how far it got
-    return Reproduction(paper, options, paper.sections(done, options), len(done), len(jobs), perf_counter() - began)
+        raise Interrupted(again()) from None
+    return again()

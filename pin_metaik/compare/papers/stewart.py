@@ -126,8 +126,6 @@ def evaluate(stroke: int, reading: str) -> Evaluated:
         case "L = 1 mm":
             dexterity = Dexterity(length=0.001)
     workspace = survey(geometry, mechanism.limits, mechanism.grid, dexterity)
-    if not workspace.complete:
-        raise KeyboardInterrupt
     return Evaluated(stroke, reading, workspace)
 
 
@@ -151,8 +149,6 @@ def optimise(stroke: int, method: str, evaluations: int, rng: np.random.Generato
     assert mechanism.task is not None
     task = replace(mechanism.task, algorithm=METHODS[method], evaluations=evaluations)
     found = design(replace(mechanism, task=task), rng=rng)
-    if found.interrupted:
-        raise KeyboardInterrupt
     return Found(stroke, method, found, fine_fitness(found.mechanism))
 
 

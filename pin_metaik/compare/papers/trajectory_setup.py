@@ -55,7 +55,7 @@ PRINTED = {
 }
 PRINTED_ITERATIONS, ITERATIONS, QUICK = 30_000, 4000, 200
 COUNTS = (1, 100, 1000, 23_779)  # of the speed table
-SCENES = 3  # random ones, for the plans
+SCENES, TRIED = 3, 100  # random ones, for the plans, and how many are drawn to find them
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,8 +151,6 @@ class Lab:
 
         steps = max(1, (CLUSTERING // 10 if self.options.quick else CLUSTERING) // PIECES)
         found = clustered_points(NOMAD_200, self.options.generator(100), steps, start=self.clustered)
-        if found.interrupted:
-            raise KeyboardInterrupt  # it keeps what it has; here the job was not done
         self.clustered = found.centres
 
     def net(self, net: str, trainer: str, points: str, design: str, run: int) -> Callable[[], NetTrial]:
@@ -172,8 +170,6 @@ class Lab:
                 rng=self.options.generator(run),
             )
             training = model.regressor.training
-            if training.interrupted:
-                raise KeyboardInterrupt
             if run == 0 and trainer == "lm" and points not in CONTROLS:
                 self.models[f"{net} {points} {design}"] = model
             e = model.errors()
@@ -250,8 +246,6 @@ class Lab:
                         method=method,  # type: ignore[arg-type]  # it checks the name itself
                         model=model,
                     )
-                if plan.interrupted:
-                    raise KeyboardInterrupt
                 wrong = None if plan.learned is None else 1e3 * plan.learned.tangent_error
                 ends = (plan.time, plan.stop_and_turn, wrong, 1e3 * plan.end_error, 1e3 * plan.seconds)
                 trials.append(PlanTrial(name, len(plan.v), label, *ends, plan.collision_free))
@@ -268,14 +262,14 @@ def routes(options: Options) -> dict[str, tuple[Array, tuple[object, ...]]]:
         "A, one corner": (np.array([(0, 0), (3, 0), (3, 3)], dtype=float), ()),
         "B, three corners": (np.array([(0, 0), (2, 0), (3, 1.5), (6, 1.5), (6, 4)]), ()),
     }
-    seed = 0
-    while len(found) < 2 + SCENES:
+    for seed in range(TRIED):
         scene = mobile.random_scene(15, options.generator(103, seed), gap=0.75)
         with suppress(mobile.NoPath):  # mitred corners may close a gap
             problem = mobile.PathProblem.of(scene, mobile.NOMAD_200.radius, 0.1)
             found[f"random {len(found) - 1}"] = (problem.optimum.points, scene.obstacles)
-        seed += 1
-    return found
+        if len(found) == 2 + SCENES:
+            return found
+    raise RuntimeError(f"fewer than {SCENES} of {TRIED} random scenes have a way through")
 
 
 def stepped(v: Array, theta: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from pin_metaik.compare.report import figures
 from pin_metaik.compare.report.overview import SPENT, in_words, spent
 from pin_metaik.compare.report.parts import Column, Figure, Section, Table, Value
 from pin_metaik.compare.results import Results, summarise
-from pin_metaik.compare.statistics import Pair, compare_all, friedman
+from pin_metaik.compare.statistics import Pair, friedman
 from pin_metaik.compare.trial import CURVE
 
 Array = NDArray[np.float64]
@@ -22,12 +23,16 @@ def by_case(results: Results, case: CaseRecord) -> Section:
     """All there is to know of one case."""
     costs = results.costs(case.name)
     test = friedman(costs)
-    pairs = compare_all(results.counted, costs)
-    text = (
+    pairs = results.pairs(case.name)
+    text: tuple[str, ...] = (
         case.about,
         case.success,
         f"Friedman's test over {test.blocks:,} tasks: chi squared = {test.statistic:.4g}, {in_words(test.p)}.",
     )
+    trials = results.of(case=case.name)
+    if trials and all(trial.error is not None for trial in trials):
+        ((error, count),) = Counter(trial.error for trial in trials).most_common(1)
+        text += (f"No trial came to an end: {count:,} of {len(trials):,} raised {error}",)
     ranks = dict(zip(results.counted, test.ranks.tolist(), strict=True))
     rows: list[tuple[Value, ...]] = []
     for method in results.methods:
@@ -73,7 +78,7 @@ def duels(results: Results) -> tuple[Figure, ...]:
         logs = np.log10(costs)
         ratios[case] = np.median(logs[:, :, None] - logs[:, None, :], axis=0)
         certain[case] = np.eye(k, dtype=bool)
-        for pair in compare_all(results.counted, costs):
+        for pair in results.pairs(case):
             i, j = results.counted.index(pair.a), results.counted.index(pair.b)
             certain[case][i, j] = certain[case][j, i] = pair.significant
     if not ratios:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.environment import read_environment
 from pin_metaik.compare.report.by_case import by_case, convergence, duels, rates
 from pin_metaik.compare.report.html import html
@@ -17,11 +18,13 @@ from pin_metaik.compare.report.write import need_figures, write
 from pin_metaik.compare.results import Results
 from pin_metaik.compare.store import read_results, replace_text
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.output import writable
 
 TITLE = "Inverse kinematics where it is hard"
 PAGE, STEM = "report.html", "report"
 
 
+@checked
 def write_report(folder: Path) -> list[Path]:
     """Write the report on the comparison in a folder, into its folder ``report``.
 
@@ -31,9 +34,11 @@ def write_report(folder: Path) -> list[Path]:
     Raises:
         InvalidSetting: The folder holds no comparison, or no row yet.
         MissingExtra: matplotlib is not installed.
+        CannotWrite: The report cannot be written there.
     """
     need_figures()
     results = read_results(folder)
+    writable(folder / STEM, folder=True)
     if not results.trials:
         raise InvalidSetting(f"{folder} has no rows yet: run pin-metaik compare --out {folder}")
     sessions = read_environment(folder)

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from importlib import resources
 
+from pin_metaik.compare.report.canvas import save
 from pin_metaik.compare.report.parts import Figure, Section, Table, Value
 from pin_metaik.compare.report.write import need_figures
 
@@ -108,14 +109,11 @@ def _figure(figure: Figure) -> str:
 def svg(figure: Figure) -> str:
     """A figure as an SVG element; the same figure gives the same text, and no name in it clashes with another's."""
     from matplotlib import rc_context
-    from matplotlib.figure import Figure as Canvas
 
-    with rc_context({"svg.fonttype": "none", "svg.hashsalt": figure.name, "font.size": 10.0}):
-        canvas = Canvas(figsize=figure.size, layout="constrained")
-        figure.draw(canvas)
-        drawn = io.StringIO()
-        canvas.savefig(drawn, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
-    text = drawn.getvalue()
+    with rc_context({"svg.fonttype": "none", "svg.hashsalt": figure.name}):
+        saved = io.StringIO()
+        save(figure, saved, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
+    text = saved.getvalue()
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>\s*", "", text, flags=re.DOTALL)
     text = re.sub(r'(\bid="|url\(#|href="#)', rf"\g<1>{figure.name}-", text)

@@ -143,6 +143,7 @@ def reading(results: Results) -> Section:
     silent = [method for method in results.methods if method not in results.counted]
     if silent:
         text += (f"Not ranked, as they do not tell what they spend: {', '.join(silent)}.",)
+    text += tuple(f"Not compared: {pair}: {reason}." for pair, reason in record.absent.items())
     if len(results.trials) < record.trials:
         text += (f"PARTIAL: {len(results.trials):,} of {record.trials:,} trials are done.",)
     columns = (Column("case"), Column("targets"), Column("counts as solved"))

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
+from pin_metaik.compare.report.canvas import save
 from pin_metaik.compare.report.parts import Figure, Section, Table
 from pin_metaik.errors import MissingExtra
 
@@ -85,10 +86,6 @@ def _write_csv(folder: Path, table: Table) -> Path:
 
 
 def _draw(folder: Path, figure: Figure) -> Path:
-    from matplotlib.figure import Figure as Canvas
-
     path = folder / f"{figure.name}.png"
-    canvas = Canvas(figsize=figure.size, layout="constrained")
-    figure.draw(canvas)
-    canvas.savefig(path, dpi=DPI)
+    save(figure, path, dpi=DPI)
     return path

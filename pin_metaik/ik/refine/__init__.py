@@ -18,6 +18,7 @@ from pin_metaik.ik.refine.transpose import Transpose
 REFINERS: dict[str, Callable[[], Refiner]] = {
     "dls": DLS,
     "dls_constant": partial(LM, "wampler"),  # damped least squares and Levenberg-Marquardt are one with this damping
+    "lm": LM,  # with Chan and Lawrence's damping
     "lm_chan": partial(LM, "chan"),
     "lm_sugihara": partial(LM, "sugihara"),
     "lm_wampler": partial(LM, "wampler"),

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik.problem import IKProblem
-from pin_metaik.ik.refine.protocol import Refinement
+from pin_metaik.ik.refine.protocol import Refinement, given_starts
 from pin_metaik.kinematics.atlas import Atlas, no_atlas
 
 PROGRESS = 0.49  # a start is given up unless four steps bring the squared error below this share,
@@ -17,6 +18,7 @@ SETTLED = 1.0 - 1e-9  # ... or this one, when there is nothing else to try
 STIFF = 1.0  # damping where a solution is far: plain least squares overshoots there
 
 
+@checked
 @dataclass(frozen=True)
 class DLS:
     """Damped least squares (Nakamura and Hanafusa 1986; Wampler 1986), all starts in one compiled loop.
@@ -42,6 +44,7 @@ class DLS:
 
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent."""
+        starts = given_starts(problem, starts, evaluations)
         return self._descend(problem, no_atlas(problem.chain.n, len(problem.targets)), starts, evaluations, PROGRESS)
 
     def refine_anywhere(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
@@ -49,12 +52,14 @@ class DLS:
 
         The first start (s, n) goes before them when its pose is nearer to the target than theirs.
         """
+        starts = given_starts(problem, starts, evaluations)
         return self._descend(problem, problem.chain.atlas, starts, evaluations, PROGRESS)
 
     def settle(self, problem: IKProblem, x: NDArray[np.float64], evaluations: int) -> Refinement:
         """Go on from x (n,) in small steps as long as it gets nearer at all: for targets that cannot be met."""
+        start = given_starts(problem, [x], evaluations)
         return replace(self, damping=STIFF)._descend(
-            problem, no_atlas(problem.chain.n, len(problem.targets)), x[None], evaluations, SETTLED
+            problem, no_atlas(problem.chain.n, len(problem.targets)), start, evaluations, SETTLED
         )
 
     def _descend(

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.ik.problem import IKProblem
-from pin_metaik.ik.refine.protocol import Refinement
+from pin_metaik.ik.refine.protocol import Refinement, given_starts
 from pin_metaik.optimize.settings import whole, within
 
 Step: TypeAlias = Callable[[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float], NDArray[np.float64]]
@@ -50,6 +50,7 @@ def iterate(
     A step that leaves the limits is clipped onto them, coordinate by coordinate. Meeting the tolerances is followed by
     further steps for as long as each gains a decade. One evaluation is one residual with its Jacobian.
     """
+    starts = given_starts(problem, starts, evaluations)
     chain = problem.chain
     lower, upper = chain.limits.lower, chain.limits.upper
     linearize, given = chain.kernels.linearize, (*chain.paths.arrays, problem.tasks, problem.rows)

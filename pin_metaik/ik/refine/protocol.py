@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, instance
+from pin_metaik.errors import InvalidConfiguration
 from pin_metaik.ik.problem import IKProblem
+from pin_metaik.optimize.settings import whole
 
 
 class Refinement(NamedTuple):
@@ -16,6 +19,22 @@ class Refinement(NamedTuple):
     x: NDArray[np.float64]
     met: bool
     evaluations: int
+
+
+def given_starts(problem: IKProblem, starts: ArrayLike, evaluations: int) -> NDArray[np.float64]:
+    """What a refiner was given, looked at: its starts (s, n), at least one.
+
+    Raises:
+        InvalidConfiguration: There are none, or of another shape.
+        InvalidSetting: There is no problem, or no number of evaluations.
+    """
+    instance(IKProblem, problem=problem)
+    if type(evaluations) is not int:
+        whole("evaluations", evaluations, 0)
+    given = array("starts", starts, "s", problem.chain.n, error=InvalidConfiguration, finite=False)
+    if not len(given):
+        raise InvalidConfiguration("a refiner needs at least one start, got none")
+    return given
 
 
 @runtime_checkable

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import instance, shown
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.iterate import Patience, Step, iterate
@@ -69,6 +70,7 @@ class QP:
         Raises:
             InvalidSetting: If the posture has not one coordinate for each joint of the chain.
         """
+        instance(IKProblem, problem=problem)
         return iterate(problem, starts, evaluations, self.steps(problem), self.patience)
 
     def steps(self, problem: IKProblem) -> Step:
@@ -113,10 +115,10 @@ def _coordinates(posture: object) -> tuple[float, ...]:
     """A posture somebody gave, as numbers."""
     try:
         coordinates = np.array(posture, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         coordinates = np.empty(0)
     if coordinates.ndim != 1 or coordinates.size == 0 or not np.isfinite(coordinates).all():
-        raise InvalidSetting(f"posture must be finite coordinates, 'middle' or None, not {posture!r}")
+        raise InvalidSetting(f"posture must be finite coordinates, 'middle' or None, not {shown(posture)}")
     return tuple(coordinates.tolist())
 
 

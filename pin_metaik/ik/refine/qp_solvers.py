@@ -54,8 +54,8 @@ def check_installed(solver: str) -> None:
         UnknownName: qpsolvers does not know it, or it is not installed.
     """
     installed = import_module("qpsolvers").available_solvers
-    if solver not in installed:
-        raise UnknownName("QP solver", solver, installed)
+    if not isinstance(solver, str) or solver not in installed:
+        raise UnknownName("QP solver", str(solver), installed)
 
 
 def _osqp(n: int, m: int, tolerance: float) -> RowQP:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arguments import instance
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.iterate import Patience, iterate
 from pin_metaik.ik.refine.protocol import Refinement
@@ -35,6 +36,7 @@ class SDLS:
 
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent."""
+        instance(IKProblem, problem=problem)
         effectors = effectors_of(problem)
 
         def step(

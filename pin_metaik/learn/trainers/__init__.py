@@ -6,7 +6,9 @@ from time import perf_counter
 
 import numpy as np
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.interrupts import Interrupted
 from pin_metaik.learn.arrays import Array
 from pin_metaik.learn.network import Network
 from pin_metaik.learn.trainers.bfgs import BFGS
@@ -25,6 +27,7 @@ TRAINERS: dict[str, type[Trainer]] = {
 }
 
 
+@checked
 def make_trainer(trainer: str | Trainer) -> Trainer:
     """A trainer from its name, with its default settings; an object is returned as it is.
 
@@ -38,6 +41,7 @@ def make_trainer(trainer: str | Trainer) -> Trainer:
     return TRAINERS[trainer]()
 
 
+@checked
 def train(
     trainer: str | Trainer,
     network: Network,
@@ -47,7 +51,7 @@ def train(
     iterations: int,
     callback: Callback | None = None,
 ) -> Training:
-    """Train a network from weights w; Ctrl-C ends it with the best weights so far.
+    """Train a network from weights w.
 
     Args:
         trainer: By name or as an object.
@@ -61,8 +65,11 @@ def train(
     Raises:
         UnknownName: No trainer of that name.
         InvalidSetting: Fewer than one iteration, or fewer data than weights.
+        Interrupted: Ctrl-C; its ``result`` is the training so far, with the best weights.
     """
     trainer = make_trainer(trainer)
+    X, w = array("X", X, "n", network.inputs), array("w", w, network.count)
+    y = array("y", y, len(X))
     if iterations < 1:
         raise InvalidSetting(f"iterations must be at least 1, not {iterations!r}")
     if len(X) < network.count:
@@ -70,17 +77,18 @@ def train(
     task = Task(network, X, y)
     record = Record(w, task.loss(w)[0], iterations, callback)
     began = perf_counter()
-    converged = interrupted = False
+
+    def trained(converged: bool, interrupted: bool = False) -> Training:
+        seconds, trace = perf_counter() - began, np.array(record.trace)
+        return Training(record.w, record.mse, len(trace), seconds, converged, interrupted, trace)
+
     try:
         trainer.run(task, w, record, iterations)
-        converged = True
     except Finished:
-        pass
+        return trained(converged=False)
     except KeyboardInterrupt:
-        interrupted = True
-    seconds = perf_counter() - began
-    trace = np.array(record.trace)
-    return Training(record.w, record.mse, len(trace), seconds, converged, interrupted, trace)
+        raise Interrupted(trained(converged=False, interrupted=True)) from None
+    return trained(converged=True)
 
 
 __all__ = [

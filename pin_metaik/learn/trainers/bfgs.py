@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 from scipy.optimize import OptimizeResult, minimize
 
+from pin_metaik.arguments import checked
 from pin_metaik.learn.arrays import Array
 from pin_metaik.learn.trainers.protocol import Record, Task
 
 
+@checked
 @dataclass(frozen=True)
 class BFGS:
     """Broyden, Fletcher, Goldfarb and Shanno 1970; an iteration is one line search.

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pin_metaik.arguments import checked
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.learn.arrays import Array
 from pin_metaik.learn.trainers.protocol import Record, Task
 
@@ -13,6 +15,7 @@ HOPELESS = 1e12  # damping at which no step is left
 PIECE = 64  # rows
 
 
+@checked
 @dataclass(frozen=True)
 class LevenbergMarquardt:
     """Levenberg-Marquardt on the normal equations, Hagan and Menhaj 1994, IEEE Trans. Neural Networks 5.
@@ -20,14 +23,25 @@ class LevenbergMarquardt:
     ``(J^T J + mu I) dw = -J^T e``; an iteration is one accepted step.
 
     Attributes:
-        mu: First damping.
-        up: Its growth after a step that did not help.
-        down: Its shrinkage after one that did.
+        mu: First damping, above 0.
+        up: Its growth after a step that did not help, above 1.
+        down: Its shrinkage after one that did, above 0 and at most 1.
+
+    Raises:
+        InvalidSetting: A setting out of its range.
     """
 
     mu: float = 1e-3
     up: float = 10.0
     down: float = 0.1
+
+    def __post_init__(self) -> None:
+        """Check that the damping grows: where no step helps, that is what ends the search for one."""
+        if not (self.mu > 0.0 and self.up > 1.0 and 0.0 < self.down <= 1.0):
+            raise InvalidSetting(
+                f"Levenberg-Marquardt takes mu above 0, up above 1 and down in (0, 1], got {self.mu}, {self.up}, "
+                f"{self.down}"
+            )
 
     def run(self, task: Task, w: Array, record: Record, iterations: int) -> None:
         """Train until the iterations are spent or no step helps."""

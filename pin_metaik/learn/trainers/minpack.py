@@ -7,12 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
+from pin_metaik.arguments import checked
 from pin_metaik.learn.arrays import Array
 from pin_metaik.learn.trainers.protocol import Record, Task
 
 EPSILON = float(np.finfo(float).eps)
 
 
+@checked
 @dataclass(frozen=True)
 class Minpack:
     """Levenberg-Marquardt as More 1978 wrote it: a trust region, QR instead of normal equations.

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.learn.arrays import Array
 from pin_metaik.learn.trainers.protocol import Record, Task
 
 
+@checked
 @dataclass(frozen=True)
 class Rprop:
     """Rprop, Riedmiller and Braun 1993, in the form iRprop- (Igel and Huesken 2003): a step is not taken back.

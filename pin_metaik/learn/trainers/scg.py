@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.learn.arrays import Array
 from pin_metaik.learn.trainers.protocol import Record, Task
 
 
+@checked
 @dataclass(frozen=True)
 class SCG:
     """Scaled conjugate gradient, Moller 1993, Neural Networks 6; variables and steps as numbered there.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.errors import Blocked, NoPath
 from pin_metaik.mobile.motion.result import TrajectoryPlan
@@ -16,13 +17,14 @@ from pin_metaik.mobile.world.scene import Scene
 MARGINS = (0.05, 0.1, 0.2, 0.3)  # m
 
 
+@checked
 def fastest_trajectory(
     scene: Scene,
     vehicle: SynchroDrive = NOMAD_200,
     *,
     paths: int = 3,
     margins: Iterable[float] = MARGINS,
-    join: Join = "mitre",
+    join: Join | None = None,
 ) -> TrajectoryPlan:
     """The quickest trajectory over the shortest paths of the best homotopy classes, for each of several margins.
 
@@ -33,7 +35,7 @@ def fastest_trajectory(
         vehicle: The robot.
         paths: How many homotopy classes to try, for each margin.
         margins: Distances, in m, that paths keep on top of the robot's radius. Those that leave no way are skipped.
-        join: How grown obstacles end at their corners.
+        join: How grown obstacles end at their corners; see ``PathProblem.of``.
 
     Raises:
         Blocked: The robot cannot be at the start or the goal with any of the margins.

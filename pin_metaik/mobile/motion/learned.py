@@ -14,7 +14,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.interrupts import wrapped
 from pin_metaik.learn import OutsideTraining, Regressor, Trainer, fit
 from pin_metaik.learn.arrays import Array
 from pin_metaik.mobile.motion.turn import lead_time
@@ -85,6 +87,7 @@ class LearnedTurn:
     angles: tuple[float, float]
     speeds: tuple[float, float]
 
+    @checked
     def tangent(self, v: ArrayLike, theta: ArrayLike) -> Array:
         """Tangent lengths (...) in m at speeds (...) in m/s and angles (...) in rad; 0 at speed 0.
 
@@ -94,7 +97,7 @@ class LearnedTurn:
         Raises:
             InvalidSetting: Speeds below 0, angles outside [0, pi), or numbers that are not finite.
         """
-        v, theta = np.broadcast_arrays(np.asarray(v, dtype=float), np.asarray(theta, dtype=float))
+        v, theta = _together(v, theta)
         if not (np.all((v >= 0) & (v < np.inf)) and np.all((theta >= 0) & (theta < np.pi))):
             raise InvalidSetting("speeds must be finite and at least 0, angles from 0 to below pi")
         moving = v > 0
@@ -111,20 +114,23 @@ class LearnedTurn:
         lengths[moving] = self._predict(v[moving], theta[moving])
         return lengths
 
+    @checked
     def knows(self, v: ArrayLike, theta: ArrayLike) -> NDArray[np.bool_]:
         """Whether speeds (...) and angles (...) lie in the training range."""
-        v, theta = np.asarray(v), np.asarray(theta)
+        v, theta = _together(v, theta)
         slack = 1 + 1e-9
         fast = (v * slack >= self.speeds[0]) & (v <= self.speeds[1] * slack)
         turned = (theta * slack >= self.angles[0]) & (theta <= self.angles[1] * slack)
         return np.asarray(fast & turned)
 
+    @checked
     def at(self, theta: Array) -> LearnedCorners:
         """The network at the corners of a route, with angles (n,) in rad.
 
         Warns:
             OutsideTraining: Angles outside the training range: there the closed form is used.
         """
+        theta = array("theta", theta, "n")
         known = self.knows(self.speeds[1], theta)
         if not known.all():
             corners = ", ".join(f"{i + 1} ({np.degrees(theta[i]):.3g} degrees)" for i in np.flatnonzero(~known))
@@ -146,6 +152,20 @@ class LearnedTurn:
         design = DESIGNS[self.design]
         v = np.maximum(v, self.speeds[0] / 100)  # the logarithm of nearly nothing
         return design.tangent(self.regressor.predict(design.inputs(v, theta)))
+
+
+def _together(v: ArrayLike, theta: ArrayLike) -> tuple[Array, Array]:
+    """Speeds and angles that somebody gave, of one shape.
+
+    Raises:
+        InvalidSetting: Not numbers, or of shapes that do not go together.
+    """
+    speeds, angles = array("v", v, "...", finite=False), array("theta", theta, "...", finite=False)
+    try:
+        shape = np.broadcast_shapes(speeds.shape, angles.shape)
+    except ValueError:
+        raise InvalidSetting(f"speeds {speeds.shape} and angles {angles.shape} do not go together") from None
+    return np.broadcast_to(speeds, shape), np.broadcast_to(angles, shape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,6 +202,7 @@ class LearnedCorners:
         return TurnReport(float(error.max(initial=0.0)), tuple(int(i) + 1 for i in np.flatnonzero(~self.known)))
 
 
+@checked
 def learn_turn(
     vehicle: SynchroDrive,
     *,
@@ -212,13 +233,14 @@ def learn_turn(
     """
     if design not in DESIGNS:
         raise UnknownName("design", design, DESIGNS)
-    points = coarse_grid(vehicle) if points is None else points
+    points = coarse_grid(vehicle) if points is None else array("points", points, "n", 2)
     if design == "log":
         points = points[points[:, 1] >= np.radians(0.5)]
     v, theta = points.T
     use = DESIGNS[design]
     alpha = v * lead_time(theta, vehicle)
-    regressor = fit(use.inputs(v, theta), use.output(alpha), hidden, trainer, iterations, rng, callback)
-    return LearnedTurn(
-        vehicle, design, regressor, (float(theta.min()), float(theta.max())), (float(v.min()), float(v.max()))
+    angles, speeds = (float(theta.min()), float(theta.max())), (float(v.min()), float(v.max()))
+    return wrapped(
+        lambda: fit(use.inputs(v, theta), use.output(alpha), hidden, trainer, iterations, rng, callback),
+        lambda regressor: LearnedTurn(vehicle, design, regressor, angles, speeds),
     )

@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 import shapely
 
+from pin_metaik.arguments import checked
 from pin_metaik.mobile.motion.learned import TurnReport
 from pin_metaik.mobile.motion.route import Route, keeps_clear
 from pin_metaik.mobile.motion.trajectory import SAMPLES, Trajectory
@@ -95,6 +96,9 @@ class TrajectoryPlan:
         """Whether it keeps the radius and gets to the goal; with a network, within a centimetre."""
         return self.collision_free and self.end_error <= (ARRIVED if self.learned is None else ARRIVED_LEARNED)
 
+    def __bool__(self) -> bool:
+        return self.success
+
     @property
     def notes(self) -> list[str]:
         """What a user should know, in sentences."""
@@ -114,6 +118,7 @@ class TrajectoryPlan:
             )
         return said
 
+    @checked
     def as_dict(self, dt: float = SAMPLES) -> dict[str, Any]:
         """Plain values, for JSON, with the samples."""
         vehicle, clearance = self.route.vehicle, self.clearance

@@ -9,7 +9,8 @@ from functools import cached_property
 import numpy as np
 import shapely
 
-from pin_metaik.errors import InvalidGeometry
+from pin_metaik.arguments import array, checked
+from pin_metaik.errors import InvalidGeometry, InvalidSetting
 from pin_metaik.mobile.motion.straight import straight_time
 from pin_metaik.mobile.motion.turn import lead_time, turn_shape, turn_time
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
@@ -42,6 +43,7 @@ class Route:
     caps: Array
 
     @staticmethod
+    @checked
     def along(
         path: Path, vehicle: SynchroDrive, obstacles: Sequence[shapely.Polygon] = (), radius: float | None = None
     ) -> Route:
@@ -92,27 +94,35 @@ class Route:
 
     def straights(self, V: Array, tangents: Array | None = None) -> Array:
         """Lengths (k, n + 1) left for the straights at speeds V (k, n); tangent lengths (k, n) default to ``v g``."""
-        alpha = np.pad(V * self.g if tangents is None else tangents, ((0, 0), (1, 1)))
+        V = self._speeds(V)
+        alpha = np.pad(
+            V * self.g if tangents is None else array("tangents", tangents, *V.shape, finite=False), ((0, 0), (1, 1))
+        )
         return np.asarray(self.lengths - alpha[:, :-1] - alpha[:, 1:])
 
     def times(self, V: Array, tangents: Array | None = None) -> Array:
         """Times (k,) in s at speeds V (k, n); inf where a straight is too short."""
+        V = self._speeds(V)
         v = np.pad(V, ((0, 0), (1, 1)))
         straights = straight_time(self.straights(V, tangents), v[:, :-1], v[:, 1:], self.vehicle)
         return np.asarray(straights.sum(axis=1) + self.turning)
 
     def lack(self, V: Array, tangents: Array | None = None) -> Array:
         """By how much (k,) in m straights are too short at speeds V (k, n), in sum; 0 is feasible."""
+        V = self._speeds(V)
         v = np.pad(V, ((0, 0), (1, 1)))
         needed = np.abs(v[:, 1:] ** 2 - v[:, :-1] ** 2) / (2 * self.vehicle.a_max)
         return np.asarray(np.maximum(needed - self.straights(V, tangents), 0).sum(axis=1))
 
+    @checked
     def clear_speed(self, corner: int, obstacles: Sequence[shapely.Polygon], radius: float) -> float:
         """The largest speed up to the cap at which the curve, and all between it and the corner, keeps the radius.
 
         The curves of a corner are copies of each other in different sizes, so what is free at one speed is free at all
         below it, and halving the interval finds the largest.
         """
+        if not 0 <= corner < len(self.caps):
+            raise InvalidSetting(f"corner is 0 to {len(self.caps) - 1}, got {corner}")
         cap = float(self.caps[corner])
         shape = self._curve(corner)
         at = self.path.corners[corner]
@@ -129,6 +139,10 @@ class Route:
             else:
                 tight = v
         return free if free > SLOW * self.vehicle.v_max else 0.0
+
+    def _speeds(self, V: Array) -> Array:
+        """Speeds (k, n) that somebody gave."""
+        return array("V", V, "k", len(self.turns), finite=False)
 
     def _curve(self, corner: int) -> Array:
         """The curve at speed 1 with the corner as its first point, both relative to the corner (m + 1, 2)."""

@@ -7,13 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pin_metaik.interrupts import wrapped
 from pin_metaik.mobile.motion import speed_kernels as kernels
 from pin_metaik.mobile.motion.route import Route
-from pin_metaik.optimize import AskTell, Box, Budget, Metaheuristic, minimize
+from pin_metaik.optimize import AskTell, Box, Budget, Metaheuristic, Status, minimize
 from pin_metaik.optimize.space import Array
 
-COARSE, FINE = 201, 41  # speeds a corner, in the first round and in those that look closer
-SHRINK, ROUNDS = 0.45, 22  # the window becomes so much smaller, so often: down to 1e-7 of the cap
+COARSE, FINE = 101, 17  # speeds a corner, in the first round and in those that look closer
+SHRINK, SMALLEST = 0.45, 1e-9  # how much smaller a window becomes, and where it ends, of the cap
+ROUNDS = 80  # at most; 25 if no window has to follow its best
+CHAIN = 3  # corners that full acceleration or no straight at all may tie to one before
 
 Tangents = Callable[[Array], Array]
 
@@ -36,25 +39,52 @@ class Speeds:
 
 
 def optimal_speeds(route: Route) -> Speeds:
-    """The best speeds: only neighbours share a straight, so dynamic programming over grids finds them.
+    """The best speeds by dynamic programming over grids: only neighbours share a straight.
 
-    The grid closes in on the best choice of the round before, which it contains: the time never rises.
+    The grid closes in on the best choice of the round before, which it contains: the time never rises. Where a straight
+    is as short as it may be, its two speeds can only move together, along a line that no grid of single speeds follows:
+    so every grid has the speeds, too, that are the largest possible after those of the corners before. A window becomes
+    smaller only once its best is well inside.
     """
     vehicle, n = route.vehicle, len(route.caps)
     if n == 0:
         return Speeds(np.empty(0), route.stop_and_turn, 1)
-    v = np.empty(n)
-    grid = route.caps[:, None] * np.linspace(0, 1, COARSE)  # (n, m)
-    spent = grid.size
-    time = kernels.best_speeds(route.lengths, route.g, grid, vehicle.a_max, vehicle.v_max, v)
-    window = 2 * route.caps / (COARSE - 1)
-    offsets = np.linspace(-1, 1, FINE)  # its middle is 0: the best so far
-    for _ in range(ROUNDS):
-        grid = np.clip(v[:, None] + window[:, None] * offsets, 0, route.caps[:, None])
-        time = min(time, kernels.best_speeds(route.lengths, route.g, grid, vehicle.a_max, vehicle.v_max, v))
+    v, time, spent = np.empty(n), np.inf, 0
+    centre, window = route.caps / 2, route.caps / 2
+    for count in (COARSE, *[FINE] * ROUNDS):
+        single = centre[:, None] + window[:, None] * np.linspace(-1, 1, count)  # its middle is the best so far
+        grid = _tied(route, np.clip(single, 0, route.caps[:, None]))
+        found = kernels.best_speeds(route.lengths, route.g, grid, vehicle.a_max, vehicle.v_max, v)
         spent += grid.size
-        window *= SHRINK
+        inside = np.abs(v - centre) <= window / 2
+        window = np.where(inside, SHRINK * window, window) if count == FINE else 2 * window / (COARSE - 1)
+        centre, time = v.copy(), min(time, found)
+        if (window <= SMALLEST * route.caps).all():
+            break
     return Speeds(v, time + route.turning, spent)
+
+
+def _tied(route: Route, grid: Array) -> Array:
+    """A grid (n, m) of speeds, and for each corner the largest that are possible after the speeds of those before."""
+    n, m = grid.shape
+    tied = np.tile(grid, (1, CHAIN + 1))
+    for i in range(1, n):
+        before = tied[i - 1, : CHAIN * m]
+        tied[i, m:] = np.minimum(_largest_after(route, i, before), route.caps[i])
+    return np.ascontiguousarray(tied)
+
+
+def _largest_after(route: Route, i: int, u: Array) -> Array:
+    """The largest speeds at corner i after speeds u (k,) at the one before: all of the straight is acceleration.
+
+    Or braking, if there is less room than for that; 0 if there is no speed at all.
+    """
+    a, g = route.vehicle.a_max, route.g[i]
+    s = route.lengths[i] - route.g[i - 1] * u  # for the straight and this corner's tangent length
+    up = a * (np.sqrt(g**2 + 2 / a * np.maximum(s + u**2 / (2 * a), 0)) - g)  # s - g v = (v^2 - u^2) / 2a
+    root = g**2 - 2 / a * (s - u**2 / (2 * a))  # s - g v = (u^2 - v^2) / 2a
+    down = a * (g - np.sqrt(np.maximum(root, 0)))
+    return np.asarray(np.maximum(np.where(up >= u, up, np.where(root >= 0, down, 0.0)), 0.0))
 
 
 def searched_speeds(
@@ -76,6 +106,9 @@ def searched_speeds(
         tangents: Tangent lengths (k, n) at speeds V (k, n), if not the true ones.
         callback: Called after every generation.
         lower: Speeds below this are a stop.
+
+    Raises:
+        Interrupted: Ctrl-C, after the first generation; its ``result`` is the best speeds so far.
     """
     n, stop = len(route.caps), route.stop_and_turn
     if n == 0:
@@ -91,7 +124,8 @@ def searched_speeds(
         lack = route.lack(V, lengths)
         return np.where(np.isfinite(T), T, 2 * stop + lack)
 
-    found = minimize(
-        costs, Box(np.zeros(n), route.caps), algorithm, budget, rng, seeds=np.zeros((1, n)), callback=callback
+    box, stopping = Box(np.zeros(n), route.caps), np.zeros((1, n))
+    return wrapped(
+        lambda: minimize(costs, box, algorithm, budget, rng, seeds=stopping, callback=callback),
+        lambda found: Speeds(driven(found.x), found.cost, found.evaluations, found.status is Status.INTERRUPTED),
     )
-    return Speeds(driven(found.x), found.cost, found.evaluations, found.status.name == "INTERRUPTED")

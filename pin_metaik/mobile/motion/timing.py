@@ -9,8 +9,10 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
-from pin_metaik.errors import InvalidSetting
-from pin_metaik.mobile.motion.learned import LearnedTurn, TurnReport, learn_turn
+from pin_metaik.arguments import array, checked
+from pin_metaik.errors import InvalidGeometry, InvalidSetting
+from pin_metaik.interrupts import wrapped
+from pin_metaik.mobile.motion.learned import LearnedCorners, LearnedTurn, learn_turn
 from pin_metaik.mobile.motion.result import Method, TrajectoryPlan
 from pin_metaik.mobile.motion.route import Route
 from pin_metaik.mobile.motion.speeds import Speeds, optimal_speeds, searched_speeds
@@ -28,6 +30,7 @@ SEARCH = DE(agents=30)  # with best/1/bin it stops early: up to 3 % too slow wit
 SEARCH_BUDGET = Budget(evaluations=30 * 500)
 
 
+@checked
 def plan_trajectory(
     path: Path | ArrayLike,
     vehicle: SynchroDrive = NOMAD_200,
@@ -62,6 +65,7 @@ def plan_trajectory(
     Raises:
         InvalidSetting: No such method, or a radius below zero.
         InvalidGeometry: A path that is none, or that turns back by 180 degrees.
+        Interrupted: Ctrl-C, after the first generation of a search; its ``result`` is the plan with the best speeds.
     """
     one_of("method", method, Method)
     if model is not None and model.vehicle != vehicle:
@@ -71,22 +75,28 @@ def plan_trajectory(
     if method == "ann":
         model = model or learn_turn(vehicle)
     began = perf_counter()
-    route = Route.along(path if isinstance(path, Path) else Path(np.asarray(path)), vehicle, obstacles, keep)
-    lengths, report, speeds = _solve(route, method, algorithm, budget, rng, model, callback)
-    took = perf_counter() - began
-    return TrajectoryPlan(
-        trajectory=drive(route, speeds.v, lengths),
-        route=route,
-        v=speeds.v,
-        method=method,
-        obstacles=tuple(obstacles),
-        radius=keep,
-        evaluations=speeds.evaluations,
-        seconds=took,
-        seed=int(rng) if isinstance(rng, (int, np.integer)) else None,
-        interrupted=speeds.interrupted,
-        learned=report,
-    )
+    if not isinstance(path, Path):
+        path = Path(array("path", path, "n", 2, error=InvalidGeometry))
+    route = Route.along(path, vehicle, obstacles, keep)
+    turns = model.at(np.abs(route.turns)) if method == "ann" and model is not None else None
+
+    def planned(speeds: Speeds) -> TrajectoryPlan:
+        took = perf_counter() - began
+        return TrajectoryPlan(
+            trajectory=drive(route, speeds.v, None if turns is None else turns.tangents(speeds.v[None])[0]),
+            route=route,
+            v=speeds.v,
+            method=method,
+            obstacles=tuple(obstacles),
+            radius=keep,
+            evaluations=speeds.evaluations,
+            seconds=took,
+            seed=int(rng) if isinstance(rng, (int, np.integer)) else None,
+            interrupted=speeds.interrupted,
+            learned=None if turns is None else turns.report(speeds.v),
+        )
+
+    return wrapped(lambda: _speeds(route, method, algorithm, budget, rng, turns, callback), planned)
 
 
 def drive(route: Route, v: Array, tangents: Array | None = None) -> Trajectory:
@@ -112,24 +122,18 @@ def drive(route: Route, v: Array, tangents: Array | None = None) -> Trajectory:
     return Trajectory(phases, (*route.path.points[0].tolist(), float(np.arctan2(dy, dx))))
 
 
-def _solve(
+def _speeds(
     route: Route,
     method: Method,
     algorithm: str | Metaheuristic,
     budget: Budget,
     rng: int | np.random.Generator | None,
-    model: LearnedTurn | None,
+    turns: LearnedCorners | None,
     callback: Callable[[AskTell], bool | None] | None,
-) -> tuple[Array | None, TurnReport | None, Speeds]:
-    """Tangent lengths if they are not the true ones, the network's report, and the speeds."""
-    match method:
-        case "dp":
-            return None, None, optimal_speeds(route)
-        case "de":
-            return None, None, searched_speeds(route, algorithm, budget, rng, callback=callback)
-        case "ann":
-            assert model is not None
-            turns = model.at(np.abs(route.turns))
-            speeds = searched_speeds(route, algorithm, budget, rng, turns.tangents, callback, turns.slowest)
-            lengths = turns.tangents(speeds.v[None])[0]
-            return lengths, turns.report(speeds.v), speeds
+) -> Speeds:
+    """The speeds by a method; with a network's ``turns``, those that it takes to be the quickest."""
+    if method == "dp":
+        return optimal_speeds(route)
+    if turns is None:
+        return searched_speeds(route, algorithm, budget, rng, callback=callback)
+    return searched_speeds(route, algorithm, budget, rng, turns.tangents, callback, turns.slowest)

@@ -11,10 +11,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.motion.turn import clothoid
 from pin_metaik.mobile.paths.path import write_table
+from pin_metaik.optimize.settings import MANY
 from pin_metaik.optimize.space import Array
+from pin_metaik.output import writable
 
 SAMPLES = 0.02  # s
 
@@ -75,6 +78,7 @@ class Samples:
         return np.column_stack((self.x, self.y))
 
 
+@checked
 class Trajectory:
     """A synchro-drive robot's motion as a list of phases, from rest at a pose.
 
@@ -85,6 +89,8 @@ class Trajectory:
     """
 
     def __init__(self, phases: Sequence[Phase], start: tuple[float, float, float]) -> None:
+        array("phases", [tuple(phase) for phase in phases] or np.empty((0, 4)), "p", 4)
+        array("start", start, 3)
         self.phases = tuple(phases)
         self.start = start
         self._begins = np.cumsum([0.0, *(phase.duration for phase in phases)])
@@ -105,9 +111,10 @@ class Trajectory:
         """Times (p + 1,) in s at which phases begin and the last ends."""
         return self._begins.copy()
 
+    @checked
     def at(self, t: ArrayLike) -> Samples:
         """States at times t (n,) in s, by the closed form; before the start and after the end it stands still."""
-        times = np.clip(np.atleast_1d(np.asarray(t, dtype=float)), 0.0, self.duration)
+        times = np.clip(np.atleast_1d(array("t", t, "...")).ravel(), 0.0, self.duration)
         if not self.phases:
             x, y, heading = (np.full(times.shape, s) for s in self.start)
             return Samples(times, x, y, heading, *np.zeros((4, len(times))))
@@ -118,24 +125,28 @@ class Trajectory:
         omega = phases[:, 3] + phases[:, 2] * within
         return Samples(times, x, y, heading, v, omega, phases[:, 1], phases[:, 2])
 
+    @checked
     def sample(self, dt: float = SAMPLES) -> Samples:
         """States every dt seconds, and at the beginning of every phase and the end.
 
         Raises:
             InvalidSetting: A dt that is not above zero.
         """
-        if not dt > 0:
-            raise InvalidSetting(f"dt must be above 0 s, not {dt!r}")
+        if not dt > 0 or self.duration > MANY * dt:
+            raise InvalidSetting(f"dt is above 0 s and not a {MANY:,}th of {self.duration:g} s, got {dt!r}")
         return self.at(np.union1d(np.arange(0.0, self.duration, dt), self._begins))
 
+    @checked
     def write_csv(self, file: str | File, dt: float = SAMPLES) -> None:
         """Write the samples as CSV."""
         write_table(file, (field.name for field in fields(Samples)), self.sample(dt).table)
 
+    @checked
     def write_json(self, file: str | File, dt: float = SAMPLES) -> None:
         """Write the samples as JSON: an object with one array for each column."""
-        File(file).write_text(json.dumps(self.as_dict(dt), allow_nan=False), encoding="utf-8")
+        writable(file).write_text(json.dumps(self.as_dict(dt), allow_nan=False), encoding="utf-8")
 
+    @checked
     def as_dict(self, dt: float = SAMPLES) -> dict[str, list[float]]:
         """The samples as plain lists, by name."""
         samples = self.sample(dt)

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from pin_metaik.interrupts import wrapped
 from pin_metaik.learn import Clusters, fuzzy_c_means
 from pin_metaik.learn.arrays import Array
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
@@ -60,8 +61,10 @@ def clustered_points(
     lower, width = grid.min(axis=0), np.ptp(grid, axis=0)
     begin = None if start is None else (start - lower) / width
     scaled = (grid - lower) / width
-    found = fuzzy_c_means(scaled, clusters, iterations=iterations, rng=rng, start=begin, callback=callback)
-    return replace(found, centres=lower + width * found.centres)
+    return wrapped(
+        lambda: fuzzy_c_means(scaled, clusters, iterations=iterations, rng=rng, start=begin, callback=callback),
+        lambda found: replace(found, centres=lower + width * found.centres),
+    )
 
 
 def random_points(

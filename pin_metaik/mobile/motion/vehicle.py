@@ -6,12 +6,14 @@ import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting, UnknownName
-from pin_metaik.mobile.files import read_json
+from pin_metaik.mobile.files import number, only, read_json
 
 INCH = 0.0254  # m
 
 
+@checked
 @dataclass(frozen=True)
 class SynchroDrive:
     """What a robot can do: ``x' = v cos theta``, ``y' = v sin theta``, ``theta' = omega``, and four limits.
@@ -61,6 +63,7 @@ VEHICLES = {vehicle.name: vehicle for vehicle in (NOMAD_200, NOMAD_200_DRIVER)}
 LIMITS = ("v_max", "a_max", "omega_max", "alpha_max", "radius")
 
 
+@checked
 def load_vehicle(source: str | Path) -> SynchroDrive:
     """A robot by name, or from a JSON file.
 
@@ -81,9 +84,8 @@ def load_vehicle(source: str | Path) -> SynchroDrive:
 
 def _read(path: Path) -> SynchroDrive:
     given = read_json(path, InvalidSetting)
-    if not isinstance(given, dict) or (unknown := given.keys() - {"name", *LIMITS}):
-        what = f"has {', '.join(sorted(unknown))}" if isinstance(given, dict) else "is no object"
-        raise InvalidSetting(f"{path} is not a vehicle: it {what}; known: name, {', '.join(LIMITS)}")
-    if wrong := [name for name in LIMITS if not isinstance(given.get(name, 0.0), (int, float))]:
-        raise InvalidSetting(f"{path}: {wrong[0]} must be a number, not {given[wrong[0]]!r}")
-    return replace(NOMAD_200, **{"name": path.stem, **given})
+    if not isinstance(given, dict):
+        raise InvalidSetting(f"{path} is not a vehicle: expected an object with {', '.join(LIMITS)}")
+    only(given, ("name", *LIMITS), str(path), InvalidSetting)
+    limits = {key: number(given, key, str(path), InvalidSetting) for key in LIMITS if key in given}
+    return replace(NOMAD_200, name=str(given.get("name", path.stem)), **limits)

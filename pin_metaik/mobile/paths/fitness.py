@@ -10,10 +10,12 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from pin_metaik.errors import UnknownName
+from pin_metaik.arguments import checked, shown
+from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.mobile.paths import fitness_kernels as kernels
+from pin_metaik.mobile.world.border import rings
 from pin_metaik.mobile.world.freespace import FreeSpace
-from pin_metaik.mobile.world.growth import grow, rings
+from pin_metaik.mobile.world.growth import grow
 from pin_metaik.mobile.world.scene import Point
 from pin_metaik.optimize.settings import one_of, within
 from pin_metaik.optimize.space import Array
@@ -43,6 +45,7 @@ class Fitness(Protocol):
         ...
 
 
+@checked
 @dataclass(frozen=True)
 class ExactFitness:
     """Length, and ``c_p (1 + length inside)`` for every stretch of a segment inside obstacles or walls.
@@ -58,11 +61,13 @@ class ExactFitness:
     def __post_init__(self) -> None:
         within("penalty", self.penalty, 0)
 
+    @checked
     def on(self, space: FreeSpace, start: Point, goal: Point) -> Overlap:
         """The costs of paths from start to goal in a free space."""
         return Overlap(space, np.array([*start, *goal]), self.penalty * space.extent)
 
 
+@checked
 @dataclass(frozen=True)
 class PaperFitness:
     """Eq. 5 of Toz, Erdogmus and Sahin 2011, to the letter: ``f = sum L + sum c_p (1 + h - d)^2``.
@@ -90,6 +95,7 @@ class PaperFitness:
         within("detour_limit", self.detour_limit, 0)
         one_of("detour_of", self.detour_of, Literal["segment", "path"])
 
+    @checked
     def on(self, space: FreeSpace, start: Point, goal: Point) -> Hulls:
         """The costs of paths from start to goal among the hulls of the grown obstacles."""
         return Hulls(space, np.array([*start, *goal]), self)
@@ -103,8 +109,13 @@ def make_fitness(fitness: str | Fitness) -> Fitness:
 
     Raises:
         UnknownName: No fitness of that name.
+        InvalidSetting: Neither a name nor an object with a method ``on``.
     """
     if not isinstance(fitness, str):
+        if isinstance(fitness, type) or not callable(getattr(fitness, "on", None)):
+            raise InvalidSetting(
+                f"not a fitness: {shown(fitness)}; give a name or an object with on(space, start, goal)"
+            )
         return fitness
     if fitness not in FITNESSES:
         raise UnknownName("fitness", fitness, FITNESSES)
@@ -167,7 +178,8 @@ class Hulls:
     @cached_property
     def hulls(self) -> list[shapely.Polygon]:
         """The convex obstacle areas."""
-        grown = (shapely.union_all(grow((polygon,), self.space.clearance)) for polygon in self.space.scene.obstacles)
+        space, obstacles = self.space, self.space.scene.obstacles
+        grown = (shapely.union_all(grow((each,), max(space.clearance, space.hair), space.join)) for each in obstacles)
         return [region.convex_hull for region in grown]
 
     @cached_property

@@ -10,8 +10,10 @@ from pathlib import Path as File
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pin_metaik.arguments import array, checked, shown
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
+from pin_metaik.output import writable
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +50,7 @@ class Path:
         """Where it bends: all points but start and goal (n - 2, 2)."""
         return self.points[1:-1]
 
+    @checked
     def straightened(self, slack: float = 0.0) -> Path:
         """The same path without repeated points and points (nearly) on the line between their neighbours.
 
@@ -62,6 +65,7 @@ class Path:
                 kept.append(point)
         return Path(np.array([*kept, self.points[-1]]))
 
+    @checked
     def write(self, file: str | File) -> None:
         """Write x and y of the points as CSV."""
         write_table(file, ("x", "y"), self.points)
@@ -70,7 +74,7 @@ class Path:
 def write_table(file: str | File, header: Iterable[str], rows: Array) -> None:
     """Write a table (n, c) as CSV with all digits."""
     lines = [",".join(header), *(",".join(map(repr, row)) for row in rows.tolist())]
-    File(file).write_text("\n".join(lines) + "\n", encoding="utf-8")
+    writable(file).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def _offset(a: Array, b: Array, point: Array) -> tuple[float, bool]:
@@ -83,10 +87,7 @@ def _offset(a: Array, b: Array, point: Array) -> tuple[float, bool]:
 
 
 def _points(values: ArrayLike) -> Array:
-    try:
-        points = np.array(values, dtype=float)
-    except (TypeError, ValueError):
-        points = np.empty(0)
-    if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2 or not np.isfinite(points).all():
-        raise InvalidGeometry(f"a path is at least two points (x, y), finite; got {values!r}")
+    points = array("a path is at least two points (x, y)", values, "n", 2, error=InvalidGeometry).copy()
+    if len(points) < 2:
+        raise InvalidGeometry(f"a path is at least two points (x, y), finite; got {shown(values)}")
     return points

@@ -7,14 +7,16 @@ from time import perf_counter
 
 import numpy as np
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.interrupts import wrapped
 from pin_metaik.mobile.errors import NoPath
 from pin_metaik.mobile.paths.fitness import Fitness, make_fitness
 from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.paths.problem import PathProblem
 from pin_metaik.mobile.paths.result import PathPlan, PathStatus
 from pin_metaik.mobile.world.scene import Scene
-from pin_metaik.optimize import ALGORITHMS, AskTell, Budget, Metaheuristic, Status, make, minimize
+from pin_metaik.optimize import ALGORITHMS, AskTell, Budget, Metaheuristic, Result, Status, make, minimize
 from pin_metaik.optimize.ga import GA
 from pin_metaik.optimize.pso import PSO
 from pin_metaik.optimize.settings import whole
@@ -31,6 +33,7 @@ PAPER_BUDGET = Budget(evaluations=50 * 100)
 PAPER_VIA = 5
 
 
+@checked
 def plan_path(
     problem: PathProblem | Scene,
     method: str | Metaheuristic = EXACT,
@@ -47,8 +50,9 @@ def plan_path(
 
     Args:
         problem: A problem, or a scene for a point robot.
-        method: ``"exact"``, the shortest path by the visibility graph; or a metaheuristic over via points, by name
-            (``"ga"`` and ``"pso"`` with the settings of the paper's Table 2) or as an object.
+        method: ``"exact"``, the shortest path by the visibility graph (with a clearance: among the grown obstacles); or
+            a metaheuristic over via points, by name (``"ga"`` and ``"pso"`` with the settings of the paper's Table 2)
+            or as an object.
         fitness: What metaheuristics minimise: ``"exact"``, ``"paper"`` or an object.
         via: Via points. With fewer than the shortest path has corners it is out of reach.
         budget: What a metaheuristic may spend; an evaluation is one path.
@@ -66,6 +70,7 @@ def plan_path(
         NoPath: There is no way, for the exact planner and ``seeded``.
         UnknownName: No planner or fitness of that name.
         InvalidSetting: Fewer than one via point, or too few for the seed.
+        Interrupted: Ctrl-C, after the first generation; its ``result`` is the plan with the best path so far.
     """
     if isinstance(problem, Scene):
         problem = PathProblem.of(problem)
@@ -73,12 +78,20 @@ def plan_path(
     if method == EXACT:
         began = perf_counter()
         path = problem.optimum
-        return _exact(path, problem, PathStatus.OPTIMAL, perf_counter() - began, seed)
+        return _exact(path, problem, _rank(path, problem), perf_counter() - began, seed)
     whole("via", via, 1)
     algorithm = _algorithm(method)
     objective = make_fitness(fitness).on(problem.space, problem.scene.start, problem.scene.goal)
     seeds = _seed(problem, via) if seeded else None
-    found = minimize(objective, problem.box(via), algorithm, budget, rng, seeds=seeds, trace=trace, callback=callback)
+    box, name = problem.box(via), method if isinstance(method, str) else type(method).__name__
+    return wrapped(
+        lambda: minimize(objective, box, algorithm, budget, rng, seeds=seeds, trace=trace, callback=callback),
+        lambda found: _searched(problem, found, name, seed),
+    )
+
+
+def _searched(problem: PathProblem, found: Result, method: str, seed: int | None) -> PathPlan:
+    """The plan that a search ends with."""
     path = problem.through(found.x)
     try:
         optimum: float | None = problem.optimum.length
@@ -89,7 +102,7 @@ def plan_path(
         PathStatus.FREE if problem.space.holds(path.points) else PathStatus.COLLIDES,
         optimum,
         found.cost,
-        method if isinstance(method, str) else type(method).__name__,
+        method,
         found.evaluations,
         found.seconds,
         seed,
@@ -99,6 +112,7 @@ def plan_path(
     )
 
 
+@checked
 def plan_alternatives(problem: PathProblem | Scene, count: int) -> list[PathPlan]:
     """The shortest path and those that go another way round, one for each homotopy class, shortest first.
 
@@ -116,7 +130,7 @@ def plan_alternatives(problem: PathProblem | Scene, count: int) -> list[PathPlan
     began = perf_counter()
     paths = problem.alternatives(count)
     took = perf_counter() - began
-    rank = [PathStatus.OPTIMAL, *[PathStatus.FREE] * (len(paths) - 1)]
+    rank = [_rank(paths[0], problem), *[PathStatus.FREE] * (len(paths) - 1)]
     return [_exact(path, problem, status, took, None) for path, status in zip(paths, rank, strict=True)]
 
 
@@ -124,6 +138,12 @@ def _exact(path: Path, problem: PathProblem, status: PathStatus, seconds: float,
     """A plan that needed no search."""
     length = path.length
     return PathPlan(path, status, problem.optimum.length, length, EXACT, 0, seconds, seed, False, problem)
+
+
+def _rank(path: Path, problem: PathProblem) -> PathStatus:
+    """What the shortest path among grown obstacles is: the shortest of all, if nothing was grown that it bends at."""
+    exact = not problem.space.clearance or not len(path.corners)
+    return PathStatus.OPTIMAL if exact else PathStatus.SHORTEST
 
 
 def _algorithm(method: str | Metaheuristic) -> Metaheuristic:

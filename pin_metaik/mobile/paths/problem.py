@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.mobile.paths.exact import shortest_path
 from pin_metaik.mobile.paths.homotopy import shortest_paths
 from pin_metaik.mobile.paths.path import Path
@@ -15,7 +16,7 @@ from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.growth import Join
 from pin_metaik.mobile.world.scene import Scene
 from pin_metaik.optimize import Box
-from pin_metaik.optimize.settings import within
+from pin_metaik.optimize.settings import few, within
 from pin_metaik.optimize.space import Array
 
 
@@ -32,14 +33,16 @@ class PathProblem:
     space: FreeSpace
 
     @staticmethod
-    def of(scene: Scene, radius: float = 0.0, margin: float = 0.0, join: Join = "mitre") -> PathProblem:
+    @checked
+    def of(scene: Scene, radius: float = 0.0, margin: float = 0.0, join: Join | None = None) -> PathProblem:
         """A problem, checked.
 
         Args:
             scene: The world, start and goal.
             radius: Of the robot, in the scene's unit.
             margin: Distance to keep on top of that.
-            join: How grown obstacles end at their corners: ``mitre`` or ``round``.
+            join: How grown obstacles end at their corners: ``mitre`` or ``round``; default: ``mitre``, which has fewer
+                corners, and ``round`` if that leaves no way.
 
         Raises:
             Blocked: The robot cannot be at the start or the goal.
@@ -47,7 +50,10 @@ class PathProblem:
         """
         within("radius", radius, 0)
         within("margin", margin, 0)
-        space = FreeSpace.of(scene, radius + margin, join)
+        clearance = radius + margin
+        space = FreeSpace.of(scene, clearance, join or "mitre")
+        if join is None and clearance and not space.connects(scene.start, scene.goal):
+            space = FreeSpace.of(scene, clearance, "round")
         space.check("start", scene.start)
         space.check("goal", scene.goal)
         return PathProblem(scene, space)
@@ -62,15 +68,19 @@ class PathProblem:
         """The shortest path. Raises NoPath if there is none."""
         return shortest_path(self.space, self.scene.start, self.scene.goal, self.visibility)
 
+    @checked
     def alternatives(self, count: int) -> list[Path]:
         """The shortest paths of the best homotopy classes, see ``shortest_paths``."""
         return shortest_paths(self.space, self.scene.start, self.scene.goal, count, self.visibility)
 
+    @checked
     def box(self, via: int) -> Box:
         """Where via points may lie: the workspace inside its walls, once for each."""
+        few("via", via)
         x_min, y_min, x_max, y_max = self.space.box
         return Box(np.tile([x_min, y_min], via), np.tile([x_max, y_max], via))
 
     def through(self, x: Array) -> Path:
         """The path through via points (2 n,)."""
-        return Path(np.vstack((self.scene.start, x.reshape(-1, 2), self.scene.goal)))
+        x = array("x", x, "2 n")
+        return Path(np.vstack((self.scene.start, x[: x.size // 2 * 2].reshape(-1, 2), self.scene.goal)))

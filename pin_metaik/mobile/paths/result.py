@@ -14,10 +14,14 @@ from pin_metaik.optimize.space import Array
 
 
 class PathStatus(StrEnum):
-    """Why a search for a path ended; only the first two are successes."""
+    """Why a search for a path ended; all but the last are successes."""
 
     OPTIMAL = "OPTIMAL"
     """The shortest path of all, free of collisions."""
+    SHORTEST = "SHORTEST"
+    """The shortest among the obstacles as they are grown, whose corners keep a little more than the clearance.
+
+    The shortest of all is shorter where the path bends: round joins keep 0.5 percent more at most, mitred ones more."""
     FREE = "FREE"
     """Free of collisions; how far from the shortest is its gap."""
     COLLIDES = "COLLIDES"
@@ -31,14 +35,14 @@ class PathPlan:
     Attributes:
         path: From start to goal.
         status: Whether it is the shortest, free, or not a path at all.
-        optimum: Length of the shortest path; None if there is no way.
+        optimum: Length of the shortest path among the obstacles as they are grown; None if there is no way.
         cost: The fitness at the path; the exact planner's is its length.
         method: Name of the planner.
         evaluations: Paths whose fitness was computed; 0 for the exact planner.
         seconds: Time taken, in s: of a search without the optimum that the gap is measured by; of the exact planner
             without what the problem had worked out already.
         seed: Of every random choice; None if a generator was handed in.
-        interrupted: Whether it was stopped by Ctrl-C or its callback.
+        interrupted: Whether its search was stopped, by Ctrl-C or its callback.
         problem: What was asked.
         trace: Evaluations and best cost after each generation (g, 2), when asked for.
     """
@@ -70,9 +74,12 @@ class PathPlan:
         """The same: a path that collides is no path."""
         return self.collision_free
 
+    def __bool__(self) -> bool:
+        return self.success
+
     @property
     def gap(self) -> float | None:
-        """How much longer than the shortest it is, as a share of that; None for a path that is none."""
+        """How much longer than the optimum it is, as a share of that; None for a path that is none."""
         if self.optimum is None or not self.collision_free:
             return None
         return max(0.0, self.length / self.optimum - 1) if self.optimum else 0.0
@@ -93,6 +100,7 @@ class PathPlan:
             "scene": self.problem.scene.name,
             "method": self.method,
             "status": str(self.status),
+            "join": self.problem.space.join if self.problem.space.clearance else None,
             "success": self.success,
             "collision_free": self.collision_free,
             "length": self.length,
@@ -113,6 +121,8 @@ class PathPlan:
         if self.evaluations and self.seed is not None:
             said.append(f"seed {self.seed}")
         far = ""
-        if self.gap is not None and self.status is not PathStatus.OPTIMAL:
+        if self.problem.space.clearance:
+            said.append(f"{self.problem.space.join} joins")
+        if self.gap is not None and self.status is PathStatus.FREE:
             far = f", {100 * self.gap:.2f} % above the optimum"
         return f"{self.status}: length {self.length:.6g}{far} ({', '.join(said)}, {1e3 * self.seconds:.0f} ms)"

@@ -1,7 +1,9 @@
 """The visibility graph: corners of the free space and the straight lines between them that a shortest path can have.
 
 A shortest path among polygons bends only at corners, and at both ends of every piece it touches the obstacle without
-cutting it (it is taut; Lozano-Perez and Wesley 1979). Few pairs of corners are, so most are never tested.
+cutting it (it is taut; Lozano-Perez and Wesley 1979). Few pairs of corners are, so most are never tested. The search
+for one path asks only for what the corners that it opens see (as Oh and Leong 2017); all pairs are there for those who
+want more paths than one.
 """
 
 from __future__ import annotations
@@ -14,56 +16,18 @@ import shapely
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from pin_metaik.arguments import array, checked
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.paths import visibility_kernels as kernels
+from pin_metaik.mobile.paths.edge_grid import EdgeGrid
+from pin_metaik.mobile.world.border import Border, Indices
 from pin_metaik.mobile.world.freespace import FreeSpace
-from pin_metaik.mobile.world.growth import rings
 from pin_metaik.mobile.world.scene import Point
 from pin_metaik.optimize.space import Array
 
-Indices = NDArray[np.int64]
+Arrays = tuple[Array, Indices, Indices, NDArray[np.bool_], float, Indices, Indices, Array, int]
+
 SLACK = 0.5  # of what counts as touching: points nearer to a line are on it
-
-
-@dataclass(frozen=True, eq=False)
-class Border:
-    """The border of a free space as arrays; the free side is on the left.
-
-    Attributes:
-        vertices: (n, 2).
-        before: The vertex before along the ring (n,).
-        after: The vertex after along the ring (n,).
-        bends: Whether a shortest path can bend there (n,): the free space is wider than a half-plane.
-        slack: How far from a line a point still counts as on it.
-    """
-
-    vertices: Array
-    before: Indices
-    after: Indices
-    bends: NDArray[np.bool_]
-    slack: float
-
-    @staticmethod
-    def of(space: FreeSpace) -> Border:
-        """The border of a free space."""
-        slack = SLACK * space.touch
-        outlines = list(rings(space.region))
-        first = np.cumsum([0, *map(len, outlines)])
-        before = [start + (np.arange(len(ring)) - 1) % len(ring) for start, ring in zip(first, outlines, strict=False)]
-        vertices = np.ascontiguousarray(np.concatenate([np.empty((0, 2)), *outlines]))
-        back = np.concatenate([np.empty(0, dtype=np.int64), *before])
-        on = np.empty_like(back)
-        on[back] = np.arange(len(back))
-        return Border(vertices, back, on, _turns_right(vertices[back], vertices, vertices[on], slack), slack)
-
-    @property
-    def arrays(self) -> tuple[Array, Indices, Indices]:
-        """What every kernel takes first."""
-        return self.vertices, self.before, self.after
-
-    @cached_property
-    def corners(self) -> Indices:
-        """Indices (c,) of the vertices a shortest path can bend at."""
-        return np.flatnonzero(self.bends)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,60 +61,68 @@ class VisibilityGraph:
         along = self.points[j] - self.points[i]
         return csr_array((np.hypot(along[:, 0], along[:, 1]), (i, j)), shape=self.edges.shape)
 
-    def without(self, i: int, j: int) -> VisibilityGraph:
-        """The graph without one edge."""
-        edges = self.edges.copy()
-        edges[i, j] = edges[j, i] = False
-        return VisibilityGraph(self.border, self.points, edges)
 
-
+@checked
 class Visibility:
-    """The part of the graph that does not depend on start and goal, built once for a free space.
+    """Who sees whom in a free space, whatever start and goal.
 
     Attributes:
         space: The free space.
         border: Its border.
-        mutual: Which corners see each other along a taut line (c, c).
+        grid: What is near each place of it.
     """
 
     def __init__(self, space: FreeSpace) -> None:
         self.space = space
-        self.border = Border.of(space)
-        corners = self.border.corners
-        self.mutual = np.zeros((len(corners), len(corners)), dtype=bool)
-        kernels.see_each_other(*self.border.arrays, corners, self.border.bends, self.border.slack, self.mutual)
+        self.border = Border.of(space.region, SLACK * space.touch)
+        self.grid = EdgeGrid.of(self.border)
 
+    @property
+    def arrays(self) -> Arrays:
+        """Border and grid, as kernels take them."""
+        border = self.border
+        return *border.arrays, border.bends, border.slack, *self.grid.arrays
+
+    @cached_property
+    def mutual(self) -> NDArray[np.bool_]:
+        """Which corners see each other along a taut line (c, c); all pairs, worked out when first asked for."""
+        corners = self.border.corners
+        points = self.border.vertices[corners]
+        sees = np.zeros((len(corners), len(corners)), dtype=bool)
+        for i in range(len(corners)):
+            kernels.seen_from(i, i + 1, points, corners, *self.arrays, sees[i])
+        sees |= sees.T
+        return sees
+
+    @checked
+    def nodes(self, start: Point, goal: Point) -> tuple[Array, Indices]:
+        """Corners, start and goal as points (c + 2, 2), and which vertex each is (c + 2,), -1 for the last two."""
+        corners = self.border.corners
+        return np.vstack((self.border.vertices[corners], start, goal)), np.append(corners, (-1, -1))
+
+    @checked
     def between(self, start: Point, goal: Point) -> VisibilityGraph:
-        """The graph with a start and a goal, which must be free."""
-        border, c = self.border, len(self.border.corners)
+        """The whole graph with a start and a goal, which must be free."""
+        points, vertex = self.nodes(start, goal)
+        c = len(points) - 2
         edges = np.zeros((c + 2, c + 2), dtype=bool)
         edges[:c, :c] = self.mutual
-        for node, (x, y) in ((c, start), (c + 1, goal)):
-            seen = np.zeros(c, dtype=bool)
-            kernels.seen_from(x, y, *border.arrays, border.corners, border.bends, border.slack, seen)
-            edges[node, :c] = edges[:c, node] = seen
-        ends = (start[0], start[1], goal[0], goal[1])
-        direct = kernels.sees(*ends, *border.arrays, border.bends, border.slack)
-        edges[c, c + 1] = edges[c + 1, c] = direct
-        points = np.vstack((border.vertices[border.corners], start, goal))
-        return VisibilityGraph(border, points, self._outside(points, edges))
+        for node in (c, c + 1):
+            kernels.seen_from(node, 0, points, vertex, *self.arrays, edges[node])
+            seen = np.flatnonzero(edges[node])
+            edges[node, seen[self.inside(points[[node]], points[seen])]] = False
+            edges[:, node] = edges[node]
+        edges[c, c + 1] = edges[c + 1, c] = edges[c, c + 1] or np.hypot(*(points[c] - points[c + 1])) <= SLACK
+        return VisibilityGraph(self.border, points, edges)
 
-    def _outside(self, points: Array, edges: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Edges (n, n) without those from start and goal, the last two points, that run inside an obstacle.
+    def inside(self, a: Array, b: Array) -> NDArray[np.bool_]:
+        """Which lines from a (n, 2) to b (n, 2), one of them no corner, run inside an obstacle.
 
         Kernels see where a line crosses the border. From one point on it to another, inside, it crosses nothing; at a
         corner that cannot be, as lines are taut there.
         """
-        i, j = np.nonzero(edges[-2:])
-        i += len(points) - 2
-        inside = shapely.intersects(self.space.core, shapely.linestrings(np.stack((points[i], points[j]), axis=1)))
-        edges[i[inside], j[inside]] = edges[j[inside], i[inside]] = False
-        return edges
-
-
-def _turns_right(before: Array, here: Array, after: Array, slack: float) -> NDArray[np.bool_]:
-    """Where a border (n, 2) with the free space on its left turns right, by more than rounding."""
-    (ux, uy), (vx, vy), (x, y) = (here - before).T, (after - here).T, (after - before).T
-    length = np.hypot(x, y)
-    right: NDArray[np.bool_] = np.where(length > 0, x * uy - y * ux > slack * length, ux * vy - uy * vx < 0)
-    return right
+        a, b = array("a", a, "n", 2), array("b", b, "n", 2)
+        if 1 not in (len(a), len(b)) and len(a) != len(b):
+            raise InvalidSetting(f"as many ends as beginnings, or one, got {len(a)} and {len(b)}")
+        a, b = np.broadcast_arrays(a, b)
+        return np.asarray(shapely.intersects(self.space.core, shapely.linestrings(np.stack((a, b), axis=1))))

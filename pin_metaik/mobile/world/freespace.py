@@ -9,33 +9,42 @@ from functools import cached_property
 import numpy as np
 import shapely
 
+from pin_metaik.arguments import array, checked
+from pin_metaik.errors import InvalidGeometry
 from pin_metaik.mobile.errors import Blocked
-from pin_metaik.mobile.world.growth import Join, grow
+from pin_metaik.mobile.world.gaps import Contacts, opened
+from pin_metaik.mobile.world.growth import WITHIN, Join, grow
 from pin_metaik.mobile.world.scene import Point, Scene
 from pin_metaik.optimize.space import Array
 
 TOUCH = 1e-10  # of the workspace's width: contact is free, and this is how deep contact may seem by rounding
 GRID = 0.1  # of that: corners are rounded to a grid so fine, which closes seams
+HAIR = 4.0  # of that: half the thickness of a line or point that nothing grows
 
 
 @dataclass(frozen=True, eq=False)
 class FreeSpace:
     """The workspace without the obstacles grown by a clearance. Its border belongs to it: touching is free.
 
-    Obstacles are joined first, among themselves and with the walls: there is no way along a seam, nor along one that
-    was exact on paper and is a hair wide since the obstacles were turned.
+    One rule for what has no width, however the scene is given. A gap between obstacles, or between an obstacle and a
+    wall, is a way only if it is wider than 2e-10 of the workspace: where two touch, in a line or in a point, there is
+    none. A part of an obstacle that is thinner than that is no obstacle. A line or a point is one, whatever its width:
+    nothing goes through a line. The planners, the exact test and the fitness that counts overlaps all follow it.
 
     Attributes:
         scene: The world; its start and goal do not matter here.
         clearance: Distance from obstacles and walls, in the scene's unit.
         region: The free polygons.
+        join: How grown obstacles end at their corners.
     """
 
     scene: Scene
     clearance: float
     region: shapely.Geometry
+    join: Join = "mitre"
 
     @staticmethod
+    @checked
     def of(scene: Scene, clearance: float = 0.0, join: Join = "mitre") -> FreeSpace:
         """The free space of a scene.
 
@@ -48,15 +57,19 @@ class FreeSpace:
             InvalidSetting: A clearance below zero, or no such join.
         """
         x_min, y_min, x_max, y_max = scene.box
-        grown = grow(scene.obstacles, clearance, join)
+        touch = TOUCH * _extent(scene.box)
+        flat = [obstacle for obstacle in scene.obstacles if obstacle.geom_type != "Polygon"]
+        solid = [obstacle for obstacle in scene.obstacles if obstacle.geom_type == "Polygon"]
+        grown = [*grow(solid, clearance, join), *grow(flat, max(clearance, HAIR * touch), join)]
         if x_max - x_min <= 2 * clearance or y_max - y_min <= 2 * clearance:
-            return FreeSpace(scene, clearance, shapely.Polygon())
+            return FreeSpace(scene, clearance, shapely.Polygon(), join)
         inside = shapely.box(x_min + clearance, y_min + clearance, x_max - clearance, y_max - clearance)
-        grid = 10.0 ** math.floor(math.log10(GRID * TOUCH * _extent(scene.box)))
-        region = shapely.difference(inside, shapely.union_all(grown, grid_size=grid), grid_size=grid)
-        parts = shapely.get_parts(shapely.set_precision(region, 0).simplify(grid))
-        thin = 2 * shapely.area(parts) < TOUCH * _extent(scene.box) * shapely.length(parts)
-        return FreeSpace(scene, clearance, shapely.multipolygons(parts[~thin]))
+        region = _without(inside, shapely.union_all(grown), touch)
+        contacts = Contacts.of(region, touch)
+        if len(contacts.corners) or contacts.slivers:
+            closed = shapely.union_all([_beyond(scene.box).difference(region), *contacts.plugs(touch)])
+            region = _without(inside, opened(closed, touch) if contacts.slivers else closed, touch)
+        return FreeSpace(scene, clearance, region, join)
 
     @property
     def extent(self) -> float:
@@ -69,6 +82,11 @@ class FreeSpace:
         return TOUCH * self.extent
 
     @property
+    def hair(self) -> float:
+        """What lines and points are grown by at least."""
+        return HAIR * self.touch
+
+    @property
     def box(self) -> tuple[float, float, float, float]:
         """The workspace inside its walls (x_min, y_min, x_max, y_max), smaller by the clearance."""
         x_min, y_min, x_max, y_max = self.scene.box
@@ -78,9 +96,7 @@ class FreeSpace:
     @cached_property
     def blocked(self) -> shapely.Geometry:
         """Obstacles and walls as one region."""
-        x_min, y_min, x_max, y_max = self.scene.box
-        beyond = self.extent
-        return shapely.box(x_min - beyond, y_min - beyond, x_max + beyond, y_max + beyond).difference(self.region)
+        return _beyond(self.scene.box).difference(self.region)
 
     @cached_property
     def core(self) -> shapely.Geometry:
@@ -96,12 +112,21 @@ class FreeSpace:
 
     def holds(self, path: Array) -> bool:
         """Whether a path (n, 2) is free of collisions: the exact test, on the whole of it and not on samples."""
-        return bool(np.isfinite(path).all()) and not self.core.intersects(shapely.LineString(path))
+        line = _line(path)
+        return bool(np.isfinite(path).all()) and not self.core.intersects(line)
+
+    @checked
+    def connects(self, start: Point, goal: Point) -> bool:
+        """Whether there is a way between two places that are free."""
+        parts, ends = shapely.get_parts(self.region), shapely.points([start, goal])
+        return bool((shapely.distance(parts[:, None], ends) <= self.touch).all(axis=1).any())
 
     def distance(self, path: Array) -> float:
         """Distance of a path (n, 2) from the nearest obstacle as given, not grown; inf without obstacles."""
-        return float(shapely.LineString(path).distance(self.solid)) if self.scene.obstacles else float("inf")
+        line = _line(path)
+        return float(line.distance(self.solid)) if self.scene.obstacles else float("inf")
 
+    @checked
     def check(self, role: str, point: Point) -> None:
         """Make sure that the robot may be somewhere.
 
@@ -115,7 +140,57 @@ class FreeSpace:
         if not self.region.is_empty:
             free = shapely.get_coordinates(shapely.shortest_line(self.region, place))[0]
             nearest = (float(free[0]), float(free[1]))
-        raise Blocked(role, point, self.clearance, nearest)
+        raise Blocked(role, point, self.clearance, nearest, self.join if self._keeps(place) else None)
+
+    def _keeps(self, place: shapely.Point) -> bool:
+        """Whether a place keeps the clearance from obstacles and walls, whatever the corners of grown obstacles say."""
+        if not self.clearance:
+            return False
+        x_min, y_min, x_max, y_max = self.box
+        within = (
+            x_min - self.touch <= place.x <= x_max + self.touch and y_min - self.touch <= place.y <= y_max + self.touch
+        )
+        return within and self.distance(shapely.get_coordinates([place, place])) >= self.clearance
+
+    @checked
+    def nearly_connects(self, start: Point, goal: Point) -> float | None:
+        """A clearance that leaves a way between two places, although this space has none; None if none does.
+
+        It is smaller by half a percent, so that the obstacles grown by it lie within the clearance everywhere: if even
+        they leave no way, there is none.
+        """
+        if not self.clearance:
+            return None
+        smaller = WITHIN * self.clearance
+        return smaller if FreeSpace.of(self.scene, smaller, "round").connects(start, goal) else None
+
+
+def _without(inside: shapely.Geometry, solid: shapely.Geometry, touch: float) -> shapely.Geometry:
+    """The polygons of the inside that are not solid, on a grid, without those that have no width."""
+    grid = 10.0 ** math.floor(math.log10(GRID * touch))
+    region = shapely.difference(inside, solid, grid_size=grid)
+    parts = shapely.get_parts(shapely.set_precision(region, 0).simplify(grid))
+    thin = 2 * shapely.area(parts) < touch * shapely.length(parts)
+    return shapely.multipolygons(parts[~thin])
+
+
+def _beyond(box: tuple[float, float, float, float]) -> shapely.Polygon:
+    """The workspace and as much again on every side."""
+    x_min, y_min, x_max, y_max = box
+    room = _extent(box)
+    return shapely.box(x_min - room, y_min - room, x_max + room, y_max + room)
+
+
+def _line(path: Array) -> shapely.LineString:
+    """A path (n, 2) that somebody gave, n >= 2.
+
+    Raises:
+        InvalidGeometry: It is none.
+    """
+    points = array("path", path, "n", 2, error=InvalidGeometry, finite=False)
+    if len(points) < 2:
+        raise InvalidGeometry(f"a path has at least two points, got {len(points)}")
+    return shapely.LineString(points)
 
 
 def _extent(box: tuple[float, float, float, float]) -> float:

@@ -1,26 +1,32 @@
-"""Occupancy grids to polygons: numpy arrays, ``.npy`` files and the maps of ROS (PGM + YAML)."""
+"""Occupancy grids to polygons: numpy arrays, ``.npy`` files and the maps of ROS (an image and its YAML)."""
 
 from __future__ import annotations
 
 import math
-import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
+from scipy import ndimage
 from shapely import affinity
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidGeometry
+from pin_metaik.mobile.world.ros_maps import OCCUPIED, read_ros_map
+from pin_metaik.optimize.settings import one_of, whole
+from pin_metaik.optimize.space import Array
 
-PINCH = 0.01  # cells; where two occupied cells touch at a corner only, a square this wide closes the gap
-MAP_KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
+Unknown = Literal["blocked", "free"]
 
 
+@checked
 @dataclass(frozen=True, eq=False)
 class OccupancyGrid:
-    """Square cells that are free or occupied.
+    """Square cells that are free or occupied. Between occupied cells that touch at a corner there is no way.
 
     Attributes:
         occupied: (rows, columns) row 0 is the lowest: cell (r, c) begins at (c, r) times the resolution.
@@ -42,23 +48,40 @@ class OccupancyGrid:
                 f"an occupancy grid has cells wider than 0 at a finite pose, got {self.resolution}, {self.origin}"
             )
 
-    @property
+    @cached_property
     def polygons(self) -> tuple[shapely.Polygon, ...]:
         """The occupied cells as as few polygons as possible; what lies beyond the corners of a turned grid too."""
-        rows, columns = self.occupied.shape
-        pieces = [*_runs(self.occupied), *_pinches(self.occupied)]
-        region = self._placed(shapely.union_all(pieces))
+        parts = [self._placed(part) for part in _outlined(self.occupied)]
         if self.origin[2]:
-            sheet = self._placed(shapely.box(0, 0, columns, rows))
-            region = shapely.union(region, shapely.box(*sheet.bounds).difference(sheet))
-        return tuple(part for part in shapely.get_parts(region) if part.area > 0)
+            sheet = self._placed(self._sheet)
+            parts = [*shapely.get_parts(shapely.union_all([*parts, shapely.box(*sheet.bounds).difference(sheet)]))]
+        return tuple(part for part in parts if part.area > 0)
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
         """The grid's box (x_min, y_min, x_max, y_max) in m."""
-        rows, columns = self.occupied.shape
-        x_min, y_min, x_max, y_max = self._placed(shapely.box(0, 0, columns, rows)).bounds
+        x_min, y_min, x_max, y_max = self._placed(self._sheet).bounds
         return x_min, y_min, x_max, y_max
+
+    @checked
+    def without_specks(self, cells: int) -> OccupancyGrid:
+        """The grid without what is noise, perhaps: groups of fewer occupied cells, joined along edges or at corners.
+
+        Args:
+            cells: How many make an obstacle, at least 1.
+
+        Raises:
+            InvalidSetting: A number below 1.
+        """
+        whole("cells", cells, 1)
+        groups, _ = ndimage.label(self.occupied, structure=np.ones((3, 3)))
+        sizes = np.bincount(groups.ravel())
+        return replace(self, occupied=self.occupied & (sizes[groups] >= cells))
+
+    @property
+    def _sheet(self) -> shapely.Polygon:
+        rows, columns = self.occupied.shape
+        return shapely.box(0, 0, columns, rows)
 
     def _placed(self, region: shapely.Geometry) -> shapely.Geometry:
         """From cells to metres."""
@@ -67,11 +90,13 @@ class OccupancyGrid:
         return affinity.affine_transform(region, (cos, -sin, sin, cos, x, y))
 
 
+@checked
 def grid_of(
     values: ArrayLike,
     *,
     threshold: float = 0.0,
-    unknown_blocks: bool = True,
+    unknown: Unknown = "blocked",
+    unknown_blocks: bool | None = None,
     resolution: float = 1.0,
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> OccupancyGrid:
@@ -80,118 +105,100 @@ def grid_of(
     Args:
         values: (rows, columns) cells above the threshold are occupied, those below zero (or NaN) unknown.
         threshold: 0 suits masks; 65 the message ``nav_msgs/OccupancyGrid``, whose numbers are percents.
-        unknown_blocks: Whether unknown cells count as occupied.
+        unknown: Whether unknown cells are ``"blocked"`` or ``"free"``.
+        unknown_blocks: The same as True or False, as it was once given.
         resolution: Width of a cell in m.
         origin: Pose (x, y, yaw) of the lower left corner, in m and rad.
 
     Raises:
         InvalidGeometry: Not a table of numbers, or cells without width.
+        InvalidSetting: Unknown cells that are neither blocked nor free.
     """
-    try:
-        numbers = np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
-        raise InvalidGeometry("an occupancy grid is a table of numbers") from None
-    unknown = ~(numbers >= 0)
-    return OccupancyGrid(np.where(unknown, unknown_blocks, numbers > threshold), resolution, origin)
+    numbers = array("an occupancy grid", values, "rows", "columns", error=InvalidGeometry, finite=False)
+    blocks = _blocks(unknown, unknown_blocks)
+    return OccupancyGrid(np.where(numbers >= 0, numbers > threshold, blocks), resolution, origin)
 
 
-def read_grid(path: str | Path, *, unknown_blocks: bool = True) -> OccupancyGrid:
-    """A grid from a file: ``.npy`` (cells of 1 m, row 0 the lowest) or the ``.yaml`` of a ROS map next to its PGM.
+@checked
+def read_grid(
+    path: str | Path,
+    *,
+    unknown: Unknown = "blocked",
+    unknown_blocks: bool | None = None,
+    threshold: float | None = None,
+    resolution: float | None = None,
+) -> OccupancyGrid:
+    """A grid from a file: ``.npy`` (row 0 the lowest) or the ``.yaml`` of a ROS map next to its image.
+
+    Args:
+        path: The file.
+        unknown: Whether unknown cells are ``"blocked"`` or ``"free"``.
+        unknown_blocks: The same as True or False, as it was once given.
+        threshold: Cells above it are occupied. Default: 0 for a ``.npy``; 99 for a ROS map, whose numbers are percents:
+            only what is certainly occupied, as for nav2's static layer. Maps of mode ``scale`` have cells between.
+        resolution: Width of a cell of a ``.npy`` in m, default 1. A ROS map has its own.
 
     Raises:
         InvalidGeometry: The file is missing, or is neither.
+        InvalidSetting: Unknown cells that are neither blocked nor free, or a resolution for a ROS map.
+        MissingExtra: PyYAML or Pillow is not installed.
     """
     path = Path(path)
-    try:
-        match path.suffix.lower():
-            case ".npy":
-                return grid_of(np.load(path, allow_pickle=False), unknown_blocks=unknown_blocks)
-            case ".yaml" | ".yml":
-                return _ros_map(path, unknown_blocks)
-    except OSError as error:
-        raise InvalidGeometry(f"cannot read {error.filename or path}: {error.strerror}") from None
-    except (ValueError, KeyError) as error:
-        if isinstance(error, InvalidGeometry):
-            raise
-        raise InvalidGeometry(f"{path} is not an occupancy grid: {error}") from None
+    blocks: Unknown = "blocked" if _blocks(unknown, unknown_blocks) else "free"
+    match path.suffix.lower():
+        case ".npy":
+            values = _read_npy(path)
+            width = 1.0 if resolution is None else resolution
+            return grid_of(values, threshold=threshold or 0.0, unknown=blocks, resolution=width)
+        case ".yaml" | ".yml":
+            if resolution is not None:
+                raise InvalidGeometry(f"{path} says itself how wide its cells are: leave out the resolution")
+            ros = read_ros_map(path)
+            above = OCCUPIED - 1 if threshold is None else threshold
+            return grid_of(ros.cells, threshold=above, unknown=blocks, resolution=ros.resolution, origin=ros.origin)
     raise InvalidGeometry(f"cannot read {path}: an occupancy grid is a .npy file or the .yaml of a ROS map")
 
 
-def _ros_map(path: Path, unknown_blocks: bool) -> OccupancyGrid:
-    """``map_server``'s trinary map: darkness above `occupied_thresh` is occupied, below `free_thresh` free."""
-    settings = _flat_yaml(path.read_text(encoding="utf-8-sig"))
-    missing = [key for key in MAP_KEYS if key not in settings]
-    if missing:
-        raise InvalidGeometry(f"{path} is not the YAML of a ROS map: it has no {', '.join(missing)}")
-    if settings.get("mode", "trinary") != "trinary":
-        raise InvalidGeometry(f"{path} is a map of mode {settings['mode']!r}: only 'trinary' can be read")
-    lightness = read_pgm(path.parent / settings["image"])
-    darkness = lightness if float(settings["negate"]) else 1 - lightness
-    occupied = darkness > float(settings["occupied_thresh"])
-    if unknown_blocks:
-        occupied |= darkness >= float(settings["free_thresh"])
-    x, y, yaw = (float(value) for value in settings["origin"].strip("[], ").split(","))
-    return OccupancyGrid(occupied[::-1], float(settings["resolution"]), (x, y, yaw))
+def _blocks(unknown: Unknown, unknown_blocks: bool | None) -> bool:
+    one_of("unknown", unknown, Unknown)
+    return unknown == "blocked" if unknown_blocks is None else bool(unknown_blocks)
 
 
-def _flat_yaml(text: str) -> dict[str, str]:
-    """The ``key: value`` lines of a map's YAML, values without quotes, a list below its key with commas."""
-    text = re.sub(r"\n\s*-\s+", ",", text)
-    lines = (line.partition(" #")[0].partition(":") for line in text.splitlines() if not line.startswith("#"))
-    return {key.strip(): value.strip().strip("'\"") for key, colon, value in lines if colon}
+def _read_npy(path: Path) -> NDArray[np.generic]:
+    try:
+        values = np.load(path, allow_pickle=False)
+    except OSError as error:
+        raise InvalidGeometry(f"cannot read {path}: {error.strerror or error}") from None
+    except (ValueError, EOFError) as error:
+        raise InvalidGeometry(f"{path} is not an occupancy grid: {error}") from None
+    if not isinstance(values, np.ndarray):
+        raise InvalidGeometry(f"{path} is not an occupancy grid: it holds several arrays")
+    return values
 
 
-def read_pgm(path: Path) -> NDArray[np.float64]:
-    """Lightness (rows, columns) from 0 (black) to 1 of a PGM image, plain (P2) or raw (P5), row 0 the highest.
-
-    Raises:
-        InvalidGeometry: The file is not a PGM image.
-    """
-    data = path.read_bytes()
-    header: list[bytes] = []
-    at = 0
-    while len(header) < 4 and at < len(data):  # magic, columns, rows, maximum; a # starts a comment
-        if data[at : at + 1] == b"#":
-            at = data.find(b"\n", at) % (len(data) + 1)
-        elif data[at : at + 1].isspace():
-            at += 1
-        else:
-            end = next((i for i in range(at, len(data)) if data[i : i + 1].isspace()), len(data))
-            header.append(data[at:end])
-            at = end
-    if len(header) < 4 or header[0] not in (b"P2", b"P5"):
-        raise InvalidGeometry(f"{path} is not a PGM image: it does not begin with P2 or P5 and its size")
-    columns, rows, maximum = (int(field) for field in header[1:])
-    if header[0] == b"P2":
-        pixels = np.array(data[at:].split(), dtype=float)
-    else:
-        pixels = np.frombuffer(data[at + 1 :], dtype=np.uint8 if maximum < 256 else np.dtype(">u2")).astype(float)
-    if pixels.size < rows * columns:
-        raise InvalidGeometry(f"{path} ends early: {pixels.size} pixels for {columns} x {rows}")
-    return pixels[: rows * columns].reshape(rows, columns) / maximum
+def _outlined(occupied: NDArray[np.bool_]) -> NDArray[np.object_]:
+    """Polygons over the occupied cells, in cells: one for each group joined along edges."""
+    faces = shapely.get_parts(shapely.polygonize(shapely.linestrings(_outlines(occupied))))
+    corners, face = shapely.get_coordinates(shapely.get_exterior_ring(faces), return_index=True)
+    order = np.lexsort((corners[:, 1], corners[:, 0], face))
+    first = order[np.searchsorted(face[order], np.arange(len(faces)))]  # the leftmost corner, of these the lowest
+    column, row = corners[first].astype(int).T  # of the cell above and right of it, which is inside
+    return np.asarray(faces[occupied[row, column]])
 
 
-def _runs(occupied: NDArray[np.bool_]) -> list[shapely.Polygon]:
-    """Boxes over the occupied cells: runs along the rows, equal runs of following rows as one."""
-    rows = len(occupied)
-    change = np.diff(np.pad(occupied, ((0, 0), (1, 1))).astype(np.int8), axis=1)
-    starts, ends = np.argwhere(change == 1), np.argwhere(change == -1)
-    open_runs: dict[tuple[int, int], int] = {}  # (first column, end): the row where it began
-    boxes: list[shapely.Polygon] = []
-    by_row: list[set[tuple[int, int]]] = [set() for _ in range(rows + 1)]
-    for (row, first), (_, end) in zip(starts.tolist(), ends.tolist(), strict=True):
-        by_row[row].add((first, end))
-    for row, runs in enumerate(by_row):
-        for run in [run for run in open_runs if run not in runs]:
-            boxes.append(shapely.box(run[0], open_runs.pop(run), run[1], row))
-        for run in runs:
-            open_runs.setdefault(run, row)
-    return boxes
+def _outlines(occupied: NDArray[np.bool_]) -> Array:
+    """Straight lines (n, 2, 2) between occupied and free cells, as long as possible; they meet at their ends only."""
+    padded = np.pad(occupied, 1)
+    flat = np.pad(padded[1:, 1:-1] != padded[:-1, 1:-1], ((0, 0), (1, 1)))  # [y, x + 1]: a line from (x, y) on to x + 1
+    upright = np.pad(padded[1:-1, 1:] != padded[1:-1, :-1], ((1, 1), (0, 0)))
+    corner = (flat[:, :-1] | flat[:, 1:]) & (upright[:-1] | upright[1:])  # [y, x]
+    along = _between_corners(corner, flat[:, 1:])
+    up = _between_corners(corner.T, upright[1:].T)
+    return np.concatenate((along, up[:, :, ::-1])).astype(float)
 
 
-def _pinches(occupied: NDArray[np.bool_]) -> list[shapely.Polygon]:
-    """Small squares at the corners where two occupied cells touch and the other two cells are free."""
-    a, b, c, d = occupied[:-1, :-1], occupied[:-1, 1:], occupied[1:, :-1], occupied[1:, 1:]
-    at = np.argwhere((a & d & ~b & ~c) | (b & c & ~a & ~d)) + 1  # (row, column) of the corner
-    y, x = at[:, 0], at[:, 1]
-    return list(shapely.box(x - PINCH / 2, y - PINCH / 2, x + PINCH / 2, y + PINCH / 2))
+def _between_corners(corner: NDArray[np.bool_], line: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """From each corner [y, x] that a line [y, x] begins at to the next one in its row: (n, 2, 2) as x, y."""
+    y, x = np.nonzero(corner)
+    begins = np.flatnonzero(line[y, x])  # the last corner of a row begins no line
+    return np.stack((np.column_stack((x, y))[begins], np.column_stack((x, y))[begins + 1]), axis=1)

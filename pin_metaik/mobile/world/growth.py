@@ -1,4 +1,4 @@
-"""Polygons grown by a clearance, so that a robot with a radius becomes a point.
+"""Obstacles grown by a clearance, so that a robot with a radius becomes a point.
 
 Written out rather than left to ``shapely.buffer``: that one simplifies concave outlines first, and its arcs run inside
 the circle, so what it returns is up to a percent of the clearance too small.
@@ -7,13 +7,14 @@ the circle, so what it returns is up to a percent of the clearance too small.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Literal
 
 import numpy as np
 import shapely
 
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.mobile.world.border import rings
 from pin_metaik.optimize.space import Array
 
 Join = Literal["mitre", "round"]
@@ -21,9 +22,10 @@ Join = Literal["mitre", "round"]
 MITRE_LIMIT = 5.0  # how many clearances a corner may stick out before its tip is cut
 STRAIGHT = 1e-9  # rad; smaller turns are none
 ARC = math.pi / 16  # rad; the longest arc one corner of a round join stands for
+WITHIN = math.cos(ARC / 2)  # obstacles grown with round joins by this share of a clearance lie within the clearance
 
 
-def grow(polygons: tuple[shapely.Polygon, ...], clearance: float, join: Join = "mitre") -> list[shapely.Polygon]:
+def grow(obstacles: Sequence[shapely.Geometry], clearance: float, join: Join = "mitre") -> list[shapely.Polygon]:
     """Polygons whose union is everything nearer than the clearance, and a little more at the corners.
 
     Around an edge that is a rectangle. Around a vertex it is the arc's circumscribed polygon, never its chords: with
@@ -31,8 +33,8 @@ def grow(polygons: tuple[shapely.Polygon, ...], clearance: float, join: Join = "
     grows in proportion to the clearance, so a larger clearance never frees anything.
 
     Args:
-        polygons: What to grow; comes back first, as it is.
-        clearance: Distance to keep, at least 0, in the polygons' unit.
+        obstacles: Polygons, lines and points; polygons come back first, as they are.
+        clearance: Distance to keep, at least 0, in the obstacles' unit.
         join: ``mitre`` has fewer vertices, ``round`` gives more room at corners.
 
     Raises:
@@ -47,21 +49,27 @@ def grow(polygons: tuple[shapely.Polygon, ...], clearance: float, join: Join = "
             widest = ARC
         case _:
             raise InvalidSetting(f"join must be 'mitre' or 'round', not {join!r}")
+    pieces = [obstacle for obstacle in obstacles if obstacle.geom_type == "Polygon"]
     if clearance == 0:
-        return list(polygons)
-    pieces = list(polygons)
-    for polygon in polygons:
-        for ring in rings(polygon):
-            pieces.extend(_collar(ring, clearance, widest, whole=not polygon.interiors))
+        return pieces
+    for obstacle in obstacles:
+        match obstacle.geom_type:
+            case "Point":
+                pieces.append(_disc(shapely.get_coordinates(obstacle)[0], clearance, widest))
+            case "LineString":
+                there = shapely.get_coordinates(obstacle)
+                pieces.extend(_collar(np.vstack((there, there[-2:0:-1])), clearance, widest, whole=True))
+            case _:
+                for ring in rings(obstacle):
+                    pieces.extend(_collar(ring, clearance, widest, whole=not obstacle.interiors))
     return pieces
 
 
-def rings(region: shapely.Geometry) -> Iterator[Array]:
-    """The rings of a polygon or several, each (n, 2) without the repeated vertex and with the inside on its left."""
-    for polygon in shapely.get_parts(region):
-        for ring, left in ((polygon.exterior, True), *((hole, False) for hole in polygon.interiors)):
-            vertices = shapely.get_coordinates(ring)[:-1]
-            yield vertices if ring.is_ccw == left else vertices[::-1]
+def _disc(centre: Array, clearance: float, widest: float) -> shapely.Polygon:
+    """The circumscribed polygon of a circle, four corners at least."""
+    quarter = _circumscribed(np.array([1.0, 0.0]), math.pi / 2, widest)
+    turns = (quarter, quarter[:, ::-1] * (-1, 1), -quarter, quarter[:, ::-1] * (1, -1))
+    return shapely.Polygon(centre + clearance * np.vstack(turns))
 
 
 def _collar(ring: Array, clearance: float, widest: float, whole: bool) -> Iterator[shapely.Polygon]:
@@ -77,6 +85,7 @@ def _collar(ring: Array, clearance: float, widest: float, whole: bool) -> Iterat
     normal = np.column_stack((along[:, 1], -along[:, 0]))  # outward: the inside is on the left
     before = np.roll(normal, 1, axis=0)  # the normal of the edge that ends in the vertex
     turn = np.arctan2(before[:, 0] * normal[:, 1] - before[:, 1] * normal[:, 0], (before * normal).sum(axis=1))
+    turn[turn < STRAIGHT - math.pi] = math.pi  # the end of a line
     outward = turn > -STRAIGHT
     tips = {i: ring[i] + clearance * _circumscribed(before[i], turn[i], widest) for i in np.flatnonzero(outward)}
     if whole and (turn > 0).all():  # convex: one piece for everything

@@ -1,8 +1,9 @@
-"""Polygons in, from whatever holds them: vertex lists, shapely, WKT, GeoJSON and files of the last two."""
+"""Obstacles in, from whatever holds them: vertex lists, shapely, WKT, GeoJSON and files of the last two."""
 
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -11,42 +12,76 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidGeometry
+from pin_metaik.mobile.errors import LooksLikeDegrees
+from pin_metaik.mobile.files import read_json, read_text
 
-ACCEPTED = "Polygon, MultiPolygon, GeometryCollection, Feature or FeatureCollection"
+SIMPLE = ("Polygon", "LineString", "Point")
+COLLECTED = tuple(f"Multi{kind}" for kind in SIMPLE)
+GEOJSON = (*SIMPLE, *COLLECTED, "GeometryCollection", "Feature", "FeatureCollection")
+ACCEPTED = "Polygon, LineString or Point, Multi... of these, GeometryCollection, Feature or FeatureCollection"
+FAR = 10  # extents from the origin: where a map of a few hundredths is likelier to be of degrees than of metres
+
+Found = tuple[BaseGeometry, str]
 
 
-def read_polygons(source: Any) -> tuple[shapely.Polygon, ...]:
-    """The polygons of a source, checked one by one.
+@checked
+def read_obstacles(source: Any) -> tuple[BaseGeometry, ...]:
+    """The polygons, lines and points of a source, checked one by one.
 
     Args:
-        source: A polygon as vertices (n, 2), as a shapely geometry, as WKT or as a GeoJSON mapping; the path of a
-            ``.geojson``, ``.json`` or ``.wkt`` file; or a sequence of any of these. Geometries of several polygons
-            become several obstacles; holes are kept; heights (z) are dropped.
+        source: A polygon as vertices (n, 2); a shapely geometry, or an object with ``__geo_interface__``; WKT, one
+            geometry or one a line; a GeoJSON mapping; the path of a ``.geojson``, ``.json`` or ``.wkt`` file; or a
+            sequence of any of these. Geometries of several parts become several obstacles; holes are kept; heights (z)
+            are dropped; a GeoJSON feature without a geometry is none.
 
     Raises:
         InvalidGeometry: A polygon crosses itself, has no area, fewer than three vertices or numbers that are not
-            finite; or the source holds something that is not a polygon.
+            finite; a line has no length; or the source holds something else.
+
+    Warns:
+        LooksLikeDegrees: GeoJSON whose coordinates look like longitudes and latitudes; lengths are then in degrees.
     """
-    return tuple(_checked(polygon, place) for polygon, place in _walk(source, "polygons"))
+    return tuple(_checked(geometry, place) for geometry, place in _walk(source, "obstacles"))
 
 
-def _walk(source: Any, place: str) -> Iterator[tuple[shapely.Polygon, str]]:
-    """Polygons of a source, each with the words that say where it was found."""
+@checked
+def read_polygons(source: Any) -> tuple[shapely.Polygon, ...]:
+    """The polygons of a source, checked one by one; see ``read_obstacles``.
+
+    Raises:
+        InvalidGeometry: As there; and for lines and points.
+    """
+    found = []
+    for geometry, place in _walk(source, "polygons"):
+        if geometry.geom_type != "Polygon":
+            raise InvalidGeometry(f"{place} is a {geometry.geom_type}: an obstacle is a Polygon or a MultiPolygon here")
+        found.append(_checked(geometry, place))
+    return tuple(found)
+
+
+def _walk(source: Any, place: str) -> Iterator[Found]:
+    """Simple geometries of a source, each with the words that say where it was found."""
     match source:
         case BaseGeometry():
             yield from _parts(source, place)
         case Path():
-            yield from _walk(_read(source), str(source))
+            text = source.suffix.lower() == ".wkt"
+            yield from _walk(read_text(source, InvalidGeometry) if text else _read_geojson(source), str(source))
         case str() if source.lower().endswith((".geojson", ".json", ".wkt")):
             yield from _walk(Path(source), place)
         case str():
-            yield from _parts(_wkt(source, place), place)
+            yield from _wkt(source, place)
         case Mapping():
-            yield from _geojson(source, place)
+            found = list(_geojson(source, place))
+            _say_if_degrees([geometry for geometry, _ in found], place)
+            yield from found
+        case _ if hasattr(source, "__geo_interface__"):
+            yield from _walk(source.__geo_interface__, place)
         case _ if _is_ring(source):
             yield _ring(source, place), place
-        case Iterable():
+        case Iterable() if not isinstance(source, np.ndarray) or source.ndim:
             for i, item in enumerate(source):
                 yield from _walk(item, f"{place}[{i}]")
         case _:
@@ -55,59 +90,64 @@ def _walk(source: Any, place: str) -> Iterator[tuple[shapely.Polygon, str]]:
             )
 
 
-def _read(path: Path) -> Any:
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-        return text.strip() if path.suffix.lower() == ".wkt" else json.loads(text)
-    except OSError as error:
-        raise InvalidGeometry(f"cannot read {path}: {error.strerror}") from None
-    except ValueError as error:
-        raise InvalidGeometry(f"{path} is not GeoJSON: {error}") from None
+def _read_geojson(path: Path) -> Mapping[str, Any]:
+    content = read_json(path, InvalidGeometry, "GeoJSON")
+    if not isinstance(content, Mapping):
+        raise InvalidGeometry(f"{path} is not GeoJSON: expected an object with a type, not {content!r:.80}")
+    return content
 
 
-def _wkt(text: str, place: str) -> BaseGeometry:
+def _wkt(text: str, place: str) -> Iterator[Found]:
+    """One geometry, or one a line."""
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
     try:
-        return shapely.from_wkt(text)
+        yield from _parts(shapely.from_wkt(text), place)
     except shapely.errors.GEOSException as error:
-        raise InvalidGeometry(f"{place} is neither WKT nor a .geojson, .json or .wkt file: {error}") from None
+        if len(lines) < 2:
+            raise InvalidGeometry(f"{place} is neither WKT nor a .geojson, .json or .wkt file: {error}") from None
+        for i, line in enumerate(lines):
+            yield from _wkt(line, f"{place} line {i + 1}")
 
 
-def _geojson(mapping: Mapping[str, Any], place: str) -> Iterator[tuple[shapely.Polygon, str]]:
+def _geojson(mapping: Any, place: str) -> Iterator[Found]:
     match mapping.get("type") if isinstance(mapping, Mapping) else mapping:
         case "FeatureCollection":
             for i, feature in enumerate(_members(mapping, "features", place)):
                 yield from _geojson(feature, f"{place} feature {i}")
         case "Feature":
-            yield from _geojson(mapping.get("geometry") or {}, place)
+            if mapping.get("geometry") is not None:
+                yield from _geojson(mapping["geometry"], place)
         case "GeometryCollection":
             for i, geometry in enumerate(_members(mapping, "geometries", place)):
                 yield from _geojson(geometry, f"{place} geometry {i}")
-        case "Polygon" | "MultiPolygon":
+        case str(kind) if kind in SIMPLE or kind in COLLECTED:
             try:
                 geometry = shapely.from_geojson(json.dumps(mapping))
-            except (shapely.errors.GEOSException, TypeError, ValueError) as error:
-                raise InvalidGeometry(f"{place} is not a GeoJSON {mapping['type']}: {error}") from None
+            except (shapely.errors.GEOSException, TypeError, ValueError, RecursionError) as error:
+                raise InvalidGeometry(f"{place} is not a GeoJSON {kind}: {error}") from None
             yield from _parts(geometry, place)
         case kind:
             raise InvalidGeometry(f"{place} is GeoJSON of type {kind!r}: an obstacle is a {ACCEPTED}")
 
 
-def _members(mapping: Mapping[str, Any], key: str, place: str) -> list[Any]:
+def _members(mapping: Mapping[str, Any], key: str, place: str) -> Iterable[Any]:
     members = mapping.get(key)
-    if not isinstance(members, list):
+    if not isinstance(members, (list, tuple)):
         raise InvalidGeometry(f"{place} is a GeoJSON {mapping['type']} without a list of {key}")
     return members
 
 
-def _parts(geometry: BaseGeometry, place: str) -> Iterator[tuple[shapely.Polygon, str]]:
+def _parts(geometry: BaseGeometry, place: str) -> Iterator[Found]:
     match geometry.geom_type:
-        case "Polygon":
+        case kind if kind in SIMPLE:
             yield shapely.force_2d(geometry), place
-        case "MultiPolygon" | "GeometryCollection":
+        case "LinearRing":
+            yield shapely.LineString(shapely.force_2d(geometry)), place
+        case kind if kind in COLLECTED or kind == "GeometryCollection":
             for i, part in enumerate(geometry.geoms):
                 yield from _parts(part, f"{place} part {i}")
         case kind:
-            raise InvalidGeometry(f"{place} is a {kind}: an obstacle is a Polygon or a MultiPolygon")
+            raise InvalidGeometry(f"{place} is a {kind}: an obstacle is a {ACCEPTED}")
 
 
 def _is_ring(source: Any) -> bool:
@@ -121,7 +161,7 @@ def _is_ring(source: Any) -> bool:
 def _ring(source: Any, place: str) -> shapely.Polygon:
     try:
         vertices = np.asarray(source, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         vertices = np.empty(0)
     if vertices.ndim != 2 or vertices.shape[1] != 2 or len(vertices) < 3:
         raise InvalidGeometry(f"{place} is not a polygon: it takes at least three vertices (x, y), got {source!r}")
@@ -130,14 +170,37 @@ def _ring(source: Any, place: str) -> shapely.Polygon:
     return shapely.Polygon(vertices)
 
 
-def _checked(polygon: shapely.Polygon, place: str) -> shapely.Polygon:
-    if polygon.is_empty:
-        raise InvalidGeometry(f"{place} is empty: it takes at least three vertices")
-    if not np.isfinite(shapely.get_coordinates(polygon)).all():
+def _checked(geometry: BaseGeometry, place: str) -> BaseGeometry:
+    kind = geometry.geom_type
+    if geometry.is_empty:
+        raise InvalidGeometry(f"{place} is empty: a {kind} has at least one vertex, a Polygon three")
+    if not np.isfinite(shapely.get_coordinates(geometry)).all():
         raise InvalidGeometry(f"{place} has vertices that are not finite")
-    if not polygon.is_valid:
-        why = shapely.is_valid_reason(polygon)
+    if kind == "LineString" and not geometry.length > 0:
+        raise InvalidGeometry(f"{place} is a line without length: give a Point")
+    if kind != "Polygon":
+        return geometry
+    if not geometry.is_valid:
+        why = shapely.is_valid_reason(geometry)
         raise InvalidGeometry(f"{place} is not a simple polygon ({why}); split it, or pass shapely.make_valid of it")
-    if not polygon.area > 0:
-        raise InvalidGeometry(f"{place} has no area: a wall needs a thickness")
-    return polygon
+    if not geometry.area > 0:
+        raise InvalidGeometry(f"{place} has no area: a wall needs a thickness, or is a LineString")
+    return geometry
+
+
+def _say_if_degrees(geometries: list[BaseGeometry], place: str) -> None:
+    """Warn if coordinates look like longitudes and latitudes: less than a degree in all, and far from the origin."""
+    if not geometries:
+        return
+    x_min, y_min, x_max, y_max = shapely.total_bounds(geometries)
+    extent = max(x_max - x_min, y_max - y_min)
+    if not 0 < extent < 1:
+        return
+    x, y = max(abs(x_min), abs(x_max)), max(abs(y_min), abs(y_max))
+    if x <= 180 and y <= 90 and max(x, y) > FAR * extent:
+        warnings.warn(
+            f"the coordinates of {place} look like longitudes and latitudes, as GeoJSON's are: lengths are then in "
+            "degrees; project them to metres first",
+            LooksLikeDegrees,
+            stacklevel=2,
+        )

@@ -7,13 +7,16 @@ import math
 import numpy as np
 import shapely
 
+from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.world.scene import Point, Scene
 from pin_metaik.randomness import as_generator
 
+MOST = 10_000  # obstacles; the time they take grows with the square of their number
 ATTEMPTS = 2000  # places tried for one obstacle
 
 
+@checked
 def random_scene(
     obstacles: int = 15,
     rng: int | np.random.Generator | None = 0,
@@ -39,9 +42,9 @@ def random_scene(
     Raises:
         InvalidSetting: The obstacles do not fit.
     """
-    if obstacles < 0 or not (size > 0 and 0 < fill < 1 and gap >= 0):
+    if not (0 <= obstacles <= MOST and 0 < size < math.inf and 0 < fill < 1 and gap >= 0):
         raise InvalidSetting(
-            "a random scene takes obstacles >= 0, size > 0, 0 < fill < 1 and gap >= 0, got "
+            f"a random scene takes 0 to {MOST:,} obstacles, size > 0, 0 < fill < 1 and gap >= 0, got "
             f"{obstacles}, {size}, {fill}, {gap}"
         )
     name = f"random:{rng}" if isinstance(rng, int) else "random"

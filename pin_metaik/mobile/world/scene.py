@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -13,12 +14,17 @@ from typing import Any
 
 import shapely
 
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidGeometry, UnknownName
-from pin_metaik.mobile.files import read_json
-from pin_metaik.mobile.world.grids import read_grid
-from pin_metaik.mobile.world.polygons import read_polygons
+from pin_metaik.mobile.files import only, read_json
+from pin_metaik.mobile.world.grids import Unknown, read_grid
+from pin_metaik.mobile.world.polygons import GEOJSON, read_obstacles
 
 Point = tuple[float, float]
+
+KEYS = ("start", "goal", "obstacles", "bounds", "name")
+REMARKS = ("note", "optimal_length", "optimal_path", "hull_optimal_length")  # about a scene; nothing is made of them
+CLOSE = 0.75  # how alike a key of somebody's GeoJSON must be to one of ours to be a slip of the pen
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +34,8 @@ class Scene:
     Attributes:
         start: (x, y).
         goal: (x, y).
-        obstacles: Polygons; they may overlap or touch. In: anything ``read_polygons`` takes.
+        obstacles: Polygons, lines and points; they may overlap or touch. Lines and points have no thickness and grow
+            with the robot's radius like all others. In: anything ``read_obstacles`` takes.
         bounds: Walls (x_min, y_min, x_max, y_max) around the workspace, or None for a plane without end.
         name: What to call it.
 
@@ -38,14 +45,14 @@ class Scene:
 
     start: Point
     goal: Point
-    obstacles: tuple[shapely.Polygon, ...] = ()
+    obstacles: tuple[shapely.Geometry, ...] = ()
     bounds: tuple[float, float, float, float] | None = None
     name: str = "scene"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "start", _point("start", self.start))
         object.__setattr__(self, "goal", _point("goal", self.goal))
-        object.__setattr__(self, "obstacles", read_polygons(self.obstacles))
+        object.__setattr__(self, "obstacles", read_obstacles(self.obstacles))
         if self.bounds is not None:
             object.__setattr__(self, "bounds", _bounds(self.bounds))
 
@@ -59,12 +66,13 @@ class Scene:
         room = max(x_max - x_min, y_max - y_min, 1e-6)
         return x_min - room, y_min - room, x_max + room, y_max + room
 
+    @checked
     def between(self, start: Any, goal: Any) -> Scene:
         """The same world with another start and goal; None keeps the one there is."""
         return replace(self, start=self.start if start is None else start, goal=self.goal if goal is None else goal)
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain values, as a scene's JSON file has them; a polygon with holes as GeoJSON."""
+        """Plain values, as a scene's JSON file has them; what is no polygon without holes, as GeoJSON."""
         return {
             "start": list(self.start),
             "goal": list(self.goal),
@@ -78,27 +86,44 @@ def scene_names() -> list[str]:
     return sorted(_shipped())
 
 
-def load_scene(source: str | Path, start: Any = None, goal: Any = None) -> Scene:
+@checked
+def load_scene(
+    source: str | Path,
+    start: Any = None,
+    goal: Any = None,
+    *,
+    unknown: Unknown = "blocked",
+    resolution: float | None = None,
+    threshold: float | None = None,
+    specks: int = 1,
+) -> Scene:
     """A scene by name, or from a file.
 
     Args:
-        source: One of ``scene_names()``; the path of a scene (``.json`` with start, goal, obstacles and perhaps
-            bounds), of polygons (``.geojson``, ``.wkt``), of an occupancy grid (``.npy``) or a ROS map (``.yaml``).
+        source: One of ``scene_names()``; the path of a scene (``.json`` with start, goal, obstacles, perhaps bounds),
+            of obstacles (``.geojson``, ``.wkt``), of an occupancy grid (``.npy``) or a ROS map (``.yaml``).
         start: (x, y) that replaces the file's; needed where the file has none.
         goal: (x, y) that replaces the file's; needed where the file has none.
+        unknown: Of a grid: whether unknown cells are ``"blocked"`` or ``"free"``.
+        resolution: Of a ``.npy``: width of a cell in m, default 1.
+        threshold: Of a grid: cells above it are occupied; see ``read_grid``.
+        specks: Of a grid: groups of fewer occupied cells are noise and left out.
 
     Raises:
         UnknownName: No such scene.
-        InvalidGeometry: The file is missing or malformed; or nobody says where the start or goal is.
+        InvalidGeometry: The file is missing or malformed, or has a key that nobody would read; or nobody says where the
+            start or goal is.
     """
     path = Path(source)
     match path.suffix.lower():
         case ".json":
             return scene_of(_read(path), path.stem, start, goal)
-        case ".geojson" | ".wkt":
+        case ".geojson":
+            return scene_of(_read(path), path.stem, start, goal)
+        case ".wkt":
             return scene_of({"obstacles": path}, path.stem, start, goal)
         case ".npy" | ".yaml" | ".yml":
-            grid = read_grid(path)
+            grid = read_grid(path, unknown=unknown, resolution=resolution, threshold=threshold).without_specks(specks)
             return scene_of({"obstacles": grid.polygons, "bounds": grid.bounds}, path.stem, start, goal)
     if str(source) not in _shipped():
         raise UnknownName("scene", str(source), _shipped())
@@ -108,19 +133,30 @@ def load_scene(source: str | Path, start: Any = None, goal: Any = None) -> Scene
 def scene_of(mapping: Mapping[str, Any], name: str = "scene", start: Any = None, goal: Any = None) -> Scene:
     """A scene from the mapping its JSON file holds; ``start`` and ``goal`` replace the mapping's.
 
+    GeoJSON is a scene, too: start, goal and bounds are members of its outermost object, or come from the caller.
+
     Raises:
-        InvalidGeometry: A key is missing or makes no sense.
+        InvalidGeometry: A key is missing, makes no sense or is one that nobody would read.
     """
-    given: dict[str, Any] = {"start": mapping.get("start") if start is None else start}
-    given["goal"] = mapping.get("goal") if goal is None else goal
-    if mapping.get("type") in ("FeatureCollection", "Feature", "GeometryCollection", "MultiPolygon", "Polygon"):
-        mapping = {"obstacles": mapping}
+    if mapping.get("type") in GEOJSON:
+        foreign = [key for key in mapping if key not in KEYS and get_close_matches(str(key), KEYS, n=1, cutoff=CLOSE)]
+        only(
+            {key: mapping[key] for key in foreign}, KEYS, name, InvalidGeometry
+        )  # others may have members of their own
+        mapping = {"obstacles": mapping, **{key: mapping[key] for key in ("start", "goal", "bounds") if key in mapping}}
+    else:
+        only(mapping, (*KEYS, *REMARKS), name, InvalidGeometry)
     if "obstacles" not in mapping:
-        raise InvalidGeometry(f"{name} is not a scene: it has no 'obstacles'; keys: start, goal, obstacles, bounds")
-    for role, point in given.items():
-        if point is None:
-            raise InvalidGeometry(f"{name} does not say where the {role} is: give {role}=(x, y)")
-    return Scene(given["start"], given["goal"], mapping["obstacles"], mapping.get("bounds"), name)
+        raise InvalidGeometry(f"{name} is not a scene: it has no 'obstacles'; keys: {', '.join(KEYS)}")
+    ends = {"start": start, "goal": goal}
+    for role, given in ends.items():
+        if given is None and mapping.get(role) is None:
+            raise InvalidGeometry(
+                f"{name} does not say where the {role} is: give {role}=(x, y), on the command line --{role} X Y"
+            )
+        ends[role] = mapping[role] if given is None else given
+    called = mapping.get("name", name)
+    return Scene(ends["start"], ends["goal"], mapping["obstacles"], mapping.get("bounds"), str(called))
 
 
 def _shipped() -> dict[str, Traversable]:
@@ -138,7 +174,7 @@ def _read(path: Path | Traversable) -> Mapping[str, Any]:
 def _point(role: str, value: Any) -> Point:
     try:
         x, y = (float(v) for v in value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidGeometry(f"the {role} is a point (x, y), got {value!r}") from None
     if not (math.isfinite(x) and math.isfinite(y)):
         raise InvalidGeometry(f"the {role} must be finite, got {value!r}")
@@ -146,16 +182,14 @@ def _point(role: str, value: Any) -> Point:
 
 
 def _bounds(value: Any) -> tuple[float, float, float, float]:
-    try:
-        x_min, y_min, x_max, y_max = (float(v) for v in value)
-    except (TypeError, ValueError):
-        raise InvalidGeometry(f"bounds are (x_min, y_min, x_max, y_max), got {value!r}") from None
+    given = array("bounds are (x_min, y_min, x_max, y_max)", value, 4, error=InvalidGeometry, finite=False)
+    x_min, y_min, x_max, y_max = given.tolist()
     if not (x_min < x_max and y_min < y_max and math.isfinite(x_max - x_min) and math.isfinite(y_max - y_min)):
         raise InvalidGeometry(f"bounds must have x_min < x_max and y_min < y_max, finite; got {value!r}")
     return x_min, y_min, x_max, y_max
 
 
-def _plain(polygon: shapely.Polygon) -> Any:
-    if polygon.interiors:
-        return json.loads(shapely.to_geojson(polygon))
-    return shapely.get_coordinates(polygon.exterior)[:-1].tolist()
+def _plain(obstacle: shapely.Geometry) -> Any:
+    if obstacle.geom_type != "Polygon" or obstacle.interiors:
+        return json.loads(shapely.to_geojson(obstacle))
+    return shapely.get_coordinates(obstacle.exterior)[:-1].tolist()

@@ -1,0 +1,1060 @@
+"""One good call of everything public: what the sweep of odd arguments starts from.
+
+``CALLS`` has an entry for every function, constructor and method that the public modules offer; where a method is
+called, ``OWNERS`` makes its object. Everything is small: a good call takes milliseconds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+import pin_metaik as mik
+from pin_metaik import collision, compare, kinematics, learn, mobile, optimize, robots, stewart
+from pin_metaik.ik import refine
+from pin_metaik.mobile.motion.trajectory import Phase
+
+Arguments = Mapping[str, Any]
+
+MODULES = {
+    "mik": mik,
+    "collision": collision,
+    "optimize": optimize,
+    "learn": learn,
+    "robots": robots,
+    "refine": refine,
+    "kinematics": kinematics,
+    "stewart": stewart,
+    "mobile": mobile,
+    "compare": compare,
+}
+REGISTRIES: dict[str, Mapping[str, Any]] = {
+    "ALGORITHMS": optimize.ALGORITHMS,
+    "TRAINERS": learn.TRAINERS,
+    "FITNESSES": mobile.FITNESSES,
+}
+
+X6 = (0.1, -1.0, 1.2, 0.3, 0.5, 0.2)
+POSE = pin.SE3(pin.rpy.rpyToMatrix(0.0, np.pi / 2, 0.0), np.array([0.3, 0.3, 0.4]))
+FEW = optimize.Budget(evaluations=200)
+SQUARE = ((2.0, 2.0), (3.0, 2.0), (3.0, 3.0), (2.0, 3.0))
+LEVEL = np.eye(4)
+LEVEL[2, 3] = 0.23
+
+
+def half(x: Any) -> Any:
+    """Costs (k,) of points (k, n)."""
+    return np.square(x).sum(axis=1)
+
+
+@cache
+def ur5() -> mik.Robot:
+    return mik.load_robot("ur5")
+
+
+@cache
+def chain() -> mik.Chain:
+    return mik.Chain(ur5().model, "tool0")
+
+
+@cache
+def solved() -> mik.IKResult:
+    return mik.solve_ik(chain(), POSE)
+
+
+@cache
+def problem() -> mik.IKProblem:
+    return mik.IKProblem.of(chain(), POSE)
+
+
+@cache
+def table() -> robots.DHTable:
+    return robots.DHTable("arm", "standard", (robots.DHRow(a=1.0), robots.DHRow(a=1.0)))
+
+
+def world() -> mik.CollisionWorld:
+    made = mik.CollisionWorld(two_links())
+    made.add(collision.Obstacle("wall", collision.Box((0.1, 1.0, 1.0)), (1.8, 0.0, 0.0)))
+    made.attach("tool", collision.Sphere(0.05), "tip", (0.0, 0.0, 0.1))
+    return made
+
+
+@cache
+def two_links() -> mik.Robot:
+    model, frame, urdf = planar()
+    return mik.Robot("arm", model, frame, robots.Description(urdf, Path("arm.urdf")))
+
+
+@cache
+def planar() -> tuple[pin.Model, str, str]:
+    """An arm of two links that are boxes."""
+    box = '<geometry><box size="0.8 0.1 0.1"/></geometry>'
+    link = f'<collision><origin xyz="0.5 0 0"/>{box}</collision>'
+    names = ("base", "upper", "lower", "tip")
+    links = "".join(f'<link name="{n}">{link if n in ("upper", "lower") else ""}</link>' for n in names)
+    limit = '<axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/>'
+    joints = "".join(
+        f'<joint name="j{i}" type="{kind}"><parent link="{a}"/><child link="{b}"/><origin xyz="{x} 0 0"/>'
+        f"{limit if kind == 'revolute' else ''}</joint>"
+        for i, (a, b, x, kind) in enumerate(
+            zip(names[:-1], names[1:], (0, 1, 1), ("revolute", "revolute", "fixed"), strict=True)
+        )
+    )
+    urdf = f'<robot name="arm">{links}{joints}</robot>'
+    return pin.buildModelFromXML(urdf), "tip", urdf
+
+
+@cache
+def arm() -> mik.Chain:
+    return mik.Chain(planar()[0], "tip")
+
+
+def asking() -> optimize.AskTell:
+    return optimize.AskTell(optimize.Box([-1.0, -1.0], [1.0, 1.0]), "gwo", budget=FEW)
+
+
+def asked() -> optimize.AskTell:
+    search = asking()
+    search.ask()
+    return search
+
+
+@cache
+def data() -> tuple[np.ndarray, np.ndarray]:
+    rng = np.random.default_rng(0)
+    X = rng.uniform(-1.0, 1.0, (40, 2))
+    return X, X[:, 0] * X[:, 1]
+
+
+@cache
+def regressor() -> learn.Regressor:
+    return learn.fit(*data(), hidden=(2,), iterations=5)
+
+
+@cache
+def mechanism() -> stewart.Mechanism:
+    made = stewart.load_mechanism("stroke_100")
+    task = stewart.DesignTask(
+        made.task.ranges, grid=stewart.Grid((3, 3, 3)), algorithm=optimize.ALGORITHMS["pso"](agents=4), evaluations=8
+    )
+    return stewart.Mechanism("small", made.geometry, made.limits, stewart.Grid((4, 4, 4)), task=task)
+
+
+@cache
+def workspace() -> stewart.Workspace:
+    return mechanism().survey()
+
+
+@cache
+def way() -> stewart.Trajectory:
+    end = LEVEL.copy()
+    end[0, 3] = 0.02
+    return stewart.straight(LEVEL, end, 1.0, 5)
+
+
+@cache
+def fitness() -> stewart.Fitness:
+    return stewart.Fitness(mechanism())
+
+
+@cache
+def point() -> np.ndarray:
+    return fitness().variables.point(mechanism().geometry, mechanism().limits)
+
+
+@cache
+def dimensions() -> Any:
+    return fitness().variables.dimensions(point())
+
+
+@cache
+def closed() -> stewart.ClosedModel:
+    return stewart.closed_model(mechanism())
+
+
+@cache
+def lengths() -> np.ndarray:
+    return stewart.leg_lengths(mechanism().geometry, LEVEL)
+
+
+@cache
+def scene() -> mobile.Scene:
+    return mobile.Scene((0.0, 0.0), (5.0, 4.0), [SQUARE], (-1.0, -1.0, 6.0, 6.0))
+
+
+@cache
+def planning() -> mobile.PathProblem:
+    return mobile.PathProblem.of(scene(), 0.2, 0.1)
+
+
+@cache
+def path() -> mobile.Path:
+    return planning().optimum
+
+
+@cache
+def route() -> mobile.Route:
+    return mobile.Route.along(path(), mobile.NOMAD_200, scene().obstacles)
+
+
+@cache
+def motion() -> mobile.TrajectoryPlan:
+    return mobile.plan_trajectory(path(), mobile.NOMAD_200, scene().obstacles)
+
+
+@cache
+def turn() -> mobile.LearnedTurn:
+    return mobile.learn_turn(mobile.NOMAD_200, hidden=(2,), iterations=3)
+
+
+@cache
+def task() -> compare.Task:
+    return compare.Task.at(chain(), np.array([X6]))
+
+
+def trial(target: int = 0) -> compare.Trial:
+    return compare.Trial("ur5", "random", "lm", target, 0, 100, solved=True, met=True, evaluations=9, seconds=0.1)
+
+
+def suite() -> compare.Suite:
+    return compare.Suite(("ur5",), ("random",), ("lm",), targets=1, seeds=1, budget=50)
+
+
+@cache
+def folder() -> Path:
+    """A finished comparison, in the folder one is in."""
+    made = Path("comparison")
+    compare.compare(suite(), made)
+    return made
+
+
+@cache
+def results() -> compare.Results:
+    return compare.read_results(folder())
+
+
+@cache
+def figure() -> Any:
+    from matplotlib.figure import Figure
+
+    return Figure()
+
+
+def rng() -> np.random.Generator:
+    return np.random.default_rng(0)
+
+
+def written(name: str, text: str) -> Path:
+    """A file in the folder one is in."""
+    path = Path(name)
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+DH = """name = "arm"
+convention = "standard"
+length = "m"
+angle = "rad"
+[parameters]
+l = 1.0
+[[joint]]
+a = "l"
+alpha = 0
+d = 0
+limits = [-1, 1]
+"""
+
+LIMITS = {
+    "lower": np.full(6, -3.0),
+    "upper": np.full(6, 3.0),
+    "velocity": np.full(6, 1.0),
+    "rotates": np.full(6, True),
+    "winds": np.full(6, False),
+    "names": tuple("abcdef"),
+}
+
+OWNERS: dict[str, Callable[[], Any]] = {
+    "mik.DLS": mik.DLS,
+    "mik.AskTell": asking,
+    "mik.AskTell.tell": asked,
+    "mik.Box": lambda: optimize.Box([-1.0, -1.0], [1.0, 1.0]),
+    "mik.Chain": chain,
+    "mik.CollisionWorld": world,
+    "mik.IKProblem": problem,
+    "mik.IKResult": solved,
+    "mik.IKSolver": lambda: mik.IKSolver(budget=FEW),
+    "mik.Limits": lambda: chain().limits,
+    "mik.Search": lambda: optimize.Search(optimize.Box([0.0], [1.0]), rng(), np.empty((0, 1)), FEW),
+    "mik.Target": lambda: mik.Target(POSE),
+    "collision.Box": lambda: collision.Box((1.0, 1.0, 1.0)),
+    "collision.Capsule": lambda: collision.Capsule(0.1, 1.0),
+    "collision.Cone": lambda: collision.Cone(0.1, 1.0),
+    "collision.Cylinder": lambda: collision.Cylinder(0.1, 1.0),
+    "collision.HalfSpace": collision.HalfSpace,
+    "collision.Mesh": lambda: collision.Mesh.read(written("tetra.obj", TRIANGLE)),
+    "collision.Plane": collision.Plane,
+    "collision.Sphere": lambda: collision.Sphere(0.1),
+    "learn.Network": lambda: learn.Network(2, (2,)),
+    "learn.Regressor": regressor,
+    "robots.Description": lambda: robots.Description(planar()[2], Path("arm.urdf")),
+    "robots.DHTable": table,
+    "refine.LM": refine.LM,
+    "refine.QP": refine.QP,
+    "refine.SDLS": refine.SDLS,
+    "refine.Newton": refine.Newton,
+    "refine.Transpose": refine.Transpose,
+    "stewart.ClosedModel": closed,
+    "stewart.Fitness": fitness,
+    "stewart.LegLimits": lambda: mechanism().limits,
+    "stewart.Mechanism": mechanism,
+    "stewart.Trajectory": way,
+    "stewart.Workspace": workspace,
+    "mobile.ExactFitness": mobile.ExactFitness,
+    "mobile.PaperFitness": mobile.PaperFitness,
+    "mobile.FreeSpace": lambda: planning().space,
+    "mobile.LearnedTurn": turn,
+    "mobile.OccupancyGrid": lambda: mobile.grid_of(np.eye(3)),
+    "mobile.Path": path,
+    "mobile.PathPlan": lambda: mobile.plan_path(planning()),
+    "mobile.PathProblem": planning,
+    "mobile.Route": route,
+    "mobile.Scene": scene,
+    "mobile.Trajectory": lambda: motion().trajectory,
+    "mobile.TrajectoryPlan": motion,
+    "mobile.Visibility": lambda: planning().visibility,
+    "compare.Case": lambda: compare.CASES["random"],
+    "compare.Replay": lambda: compare.replay(folder(), "ur5/random/0/lm/0"),
+    "compare.Results": results,
+    "compare.Search": lambda: compare.Search("lm", None, "lm_chan"),
+    "compare.Suite": suite,
+    "compare.Task": task,
+    "compare.Trial": trial,
+}
+
+REFINE = {"starts": np.array([X6]), "evaluations": 50}
+
+
+def refining() -> Arguments:
+    return {"problem": problem(), **REFINE}
+
+
+# What a search is allowed is the caller's own time: a huge number there is a long search, not a fault.
+PATIENT = {"evaluations", "iterations", "budget", "targets", "seeds", "samples", "seconds", "cells", "starts"}
+
+CALLS: dict[str, Callable[[], Arguments]] = {
+    # mik
+    "mik.DLS": lambda: {"damping": 0.005, "iterations": 100},
+    "mik.DLS.refine": refining,
+    "mik.DLS.refine_anywhere": refining,
+    "mik.DLS.settle": lambda: {"problem": problem(), "x": np.array(X6), "evaluations": 50},
+    "mik.AskTell": lambda: {
+        "box": optimize.Box([-1.0], [1.0]),
+        "algorithm": "gwo",
+        "rng": 0,
+        "seeds": [0.5],
+        "budget": FEW,
+        "keep": 1,
+    },
+    "mik.AskTell.ask": dict,
+    "mik.AskTell.tell": lambda: {"costs": np.zeros(30)},
+    "mik.AskTell.stop": dict,
+    "mik.Box": lambda: {"lower": [-1.0], "upper": [1.0]},
+    "mik.Box.sample": lambda: {"rng": rng(), "count": 3},
+    "mik.Box.clip": lambda: {"X": np.zeros((3, 2))},
+    "mik.Box.halfway": lambda: {"X": np.zeros((3, 2)), "origin": np.zeros((3, 2))},
+    "mik.Box.contains": lambda: {"X": np.zeros((3, 2))},
+    "mik.Box.holds": lambda: {"X": np.zeros((3, 2))},
+    "mik.Budget": lambda: {"evaluations": 100, "seconds": 1.0, "target": 1e-3},
+    "mik.Chain": lambda: {
+        "model": ur5().model,
+        "frame": "tool0",
+        "locked": ["elbow_joint"],
+        "limits": {"wrist_1_joint": (-1.0, 1.0)},
+        "reference": np.zeros(6),
+    },
+    "mik.Chain.at": lambda: {"q": X6},
+    "mik.Chain.q": lambda: {"x": X6, "q0": np.zeros(6)},
+    "mik.Chain.x": lambda: {"q": X6},
+    "mik.Chain.configuration": lambda: {"q": X6},
+    "mik.Chain.inside": lambda: {"q": np.array(X6)},
+    "mik.Chain.branches": lambda: {"pose": POSE.homogeneous, "x0": np.array(X6)},
+    "mik.Chain.sample": lambda: {"count": 3, "seed": (0, 1)},
+    "mik.Chain.reach": lambda: {"tip": 0, "oriented": True},
+    "mik.Chain.placements": lambda: {"q": np.array(X6)},
+    "mik.Chain.poses": lambda: {"X": [X6]},
+    "mik.CollisionWorld": lambda: {
+        "robot": two_links(),
+        "obstacles": [],
+        "margin": 0.0,
+        "srdf": None,
+        "simplify": "none",
+        "exact": True,
+    },
+    "mik.CollisionWorld.add": lambda: {"obstacle": collision.Obstacle("ball", collision.Sphere(0.1), (3.0, 0.0, 0.0))},
+    "mik.CollisionWorld.move": lambda: {"name": "wall", "pose": (1.9, 0.0, 0.0)},
+    "mik.CollisionWorld.remove": lambda: {"name": "wall"},
+    "mik.CollisionWorld.attach": lambda: {
+        "name": "ball",
+        "shape": collision.Sphere(0.1),
+        "frame": "tip",
+        "pose": (0.0, 0.0, 0.1),
+        "touching": ["wall"],
+    },
+    "mik.CollisionWorld.detach": lambda: {"name": "tool", "q": [0.1, 0.2]},
+    "mik.CollisionWorld.allow": lambda: {"first": "upper", "second": "wall", "reason": "User"},
+    "mik.CollisionWorld.check": lambda: {"first": "upper", "second": "wall"},
+    "mik.CollisionWorld.write_srdf": lambda: {"path": "written.srdf"},
+    "mik.CollisionWorld.in_collision": lambda: {"q": [0.1, 0.2]},
+    "mik.CollisionWorld.pairs_in_collision": lambda: {"q": [0.1, 0.2]},
+    "mik.CollisionWorld.min_distance": lambda: {"q": [0.1, 0.2]},
+    "mik.CollisionWorld.in_collision_batch": lambda: {"Q": [[0.1, 0.2]]},
+    "mik.CollisionWorld.min_distance_batch": lambda: {"Q": [[0.1, 0.2]]},
+    "mik.IKProblem.of": lambda: {"chain": chain(), "target": POSE, "world": None},
+    "mik.IKProblem.at": lambda: {"q": X6},
+    "mik.IKProblem.linearize": lambda: {"x": np.array(X6)},
+    "mik.IKProblem.branches": lambda: {"x0": np.array(X6)},
+    "mik.IKProblem.near": lambda: {"count": 3},
+    "mik.IKProblem.costs": lambda: {"X": np.array([X6])},
+    "mik.IKProblem.verdict": lambda: {"q": np.array(X6)},
+    "mik.IKProblem.accepts": lambda: {"q": np.array(X6)},
+    "mik.IKResult.verify": dict,
+    "mik.IKSolver": lambda: {
+        "seeder": "gwo",
+        "refiner": "dls",
+        "budget": FEW,
+        "starts": 3,
+        "select": "first",
+        "trace": False,
+    },
+    "mik.IKSolver.solve": lambda: {"problem": problem(), "q0": X6, "rng": 0, "first": None},
+    "mik.Limits": lambda: dict(LIMITS),
+    "mik.Limits.box": dict,
+    "mik.Limits.one_turn": dict,
+    "mik.Limits.clip": lambda: {"x": np.array(X6)},
+    "mik.Limits.nearest_turns": lambda: {"x": np.array(X6), "x0": np.array(X6)},
+    "mik.Limits.contains": lambda: {"x": np.array(X6), "tolerance": 0.0},
+    "mik.Limits.replace": lambda: {"limits": {"elbow_joint": (-1.0, 1.0)}},
+    "mik.Search": lambda: {
+        "space": optimize.Box([0.0], [1.0]),
+        "rng": rng(),
+        "seeds": np.empty((0, 1)),
+        "budget": FEW,
+    },
+    "mik.Search.start": lambda: {"count": 3},
+    "mik.Target": lambda: {
+        "pose": POSE,
+        "frame": None,
+        "position_tolerance": 1e-5,
+        "orientation_tolerance": (1e-3, 1e-3, 1e-3),
+        "position_weight": 1.0,
+        "orientation_weight": 1.0,
+    },
+    "mik.Target.at": lambda: {"xyz": (0.3, 0.3, 0.4), "frame": None, "tolerance": 1e-5},
+    "mik.Target.facing": lambda: {"rotation": np.eye(3), "frame": None, "tolerance": 1e-5},
+    "mik.Target.of": lambda: {"target": POSE},
+    "mik.Target.judge": lambda: {"placement": POSE},
+    "mik.load_robot": lambda: {"name": "rv7fl", "parameters": None, "free_flyer": False, "mimic": True},
+    "mik.minimize": lambda: {
+        "objective": half,
+        "box": optimize.Box([-1.0], [1.0]),
+        "algorithm": "gwo",
+        "budget": FEW,
+        "rng": 0,
+        "seeds": [0.5],
+        "trace": True,
+        "callback": None,
+        "keep": 2,
+    },
+    "mik.robot_names": dict,
+    "mik.solve_ik": lambda: {
+        "chain": chain(),
+        "target": POSE,
+        "q0": X6,
+        "solver": mik.IKSolver(budget=FEW),
+        "world": None,
+        "rng": 0,
+    },
+    "mik.solve_ik_all": lambda: {
+        "chain": chain(),
+        "target": POSE,
+        "q0": X6,
+        "limit": 4,
+        "apart": 0.01,
+        "budget": FEW,
+        "world": None,
+        "rng": 0,
+    },
+    "mik.solve_ik_batch": lambda: {
+        "chain": chain(),
+        "targets": [POSE, POSE],
+        "q0": X6,
+        "solver": mik.IKSolver(budget=FEW),
+        "world": None,
+        "workers": 1,
+        "rng": 0,
+    },
+    "mik.solve_ik_path": lambda: {
+        "chain": arm(),
+        "targets": [[1.2, 0.3, 0.0], [1.2, 0.4, 0.0]],
+        "q0": [0.1, 0.2],
+        "max_step": 0.3,
+        "world": None,
+        "rng": 0,
+    },
+    # collision
+    "collision.Box": lambda: {"size": (1.0, 1.0, 1.0)},
+    "collision.Box.geometry": dict,
+    "collision.Capsule": lambda: {"radius": 0.1, "length": 1.0},
+    "collision.Capsule.geometry": dict,
+    "collision.Cone": lambda: {"radius": 0.1, "length": 1.0},
+    "collision.Cone.geometry": dict,
+    "collision.Cylinder": lambda: {"radius": 0.1, "length": 1.0},
+    "collision.Cylinder.geometry": dict,
+    "collision.HalfSpace": lambda: {"normal": (0.0, 0.0, 1.0), "offset": 0.0},
+    "collision.HalfSpace.geometry": dict,
+    "collision.Plane": lambda: {"normal": (0.0, 0.0, 1.0), "offset": 0.0},
+    "collision.Plane.geometry": dict,
+    "collision.Sphere": lambda: {"radius": 0.1},
+    "collision.Sphere.geometry": dict,
+    "collision.Mesh": lambda: {
+        "vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
+        "triangles": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
+        "name": "tetra",
+    },
+    "collision.Mesh.read": lambda: {"path": written("tetra.obj", TRIANGLE), "scale": 1.0},
+    "collision.Mesh.geometry": dict,
+    "collision.Obstacle": lambda: {
+        "name": "ball",
+        "shape": collision.Sphere(0.1),
+        "pose": (0.0, 0.0, 1.0),
+        "touching": ("base",),
+    },
+    "collision.load_scene": lambda: {"source": "table"},
+    "collision.scene_names": dict,
+    # optimize
+    "optimize.make": lambda: {"algorithm": "gwo"},
+    # learn
+    "learn.Network": lambda: {"inputs": 2, "hidden": (3, 3)},
+    "learn.Network.initial": lambda: {"rng": 0},
+    "learn.Network.outputs": lambda: {"w": np.zeros(9), "X": data()[0]},
+    "learn.Network.jacobian": lambda: {"w": np.zeros(9), "X": data()[0]},
+    "learn.Network.gradient": lambda: {"w": np.zeros(9), "X": data()[0], "y": data()[1]},
+    "learn.Regressor.predict": lambda: {"X": data()[0]},
+    "learn.Regressor.knows": lambda: {"X": data()[0]},
+    "learn.Regressor.__call__": lambda: {"X": data()[0]},
+    "learn.fit": lambda: {
+        "X": data()[0],
+        "y": data()[1],
+        "hidden": (2,),
+        "trainer": "lm",
+        "iterations": 3,
+        "rng": 0,
+        "callback": None,
+    },
+    "learn.fuzzy_c_means": lambda: {
+        "Z": data()[0],
+        "clusters": 2,
+        "m": 2.0,
+        "iterations": 5,
+        "tolerance": 1e-6,
+        "rng": 0,
+        "start": [[0.0, 0.0], [1.0, 1.0]],
+        "callback": None,
+    },
+    "learn.make_trainer": lambda: {"trainer": "lm"},
+    "learn.memberships": lambda: {"Z": data()[0], "centres": [[0.0, 0.0], [1.0, 1.0]], "m": 2.0},
+    "learn.train": lambda: {
+        "trainer": "lm",
+        "network": learn.Network(2, (2,)),
+        "X": data()[0],
+        "y": data()[1],
+        "w": np.full(9, 0.1),
+        "iterations": 3,
+        "callback": None,
+    },
+    # robots
+    "robots.DHRow": lambda: {
+        "a": 1.0,
+        "alpha": 0.0,
+        "d": 0.0,
+        "theta": 0.0,
+        "type": "revolute",
+        "lower": -1.0,
+        "upper": 1.0,
+        "velocity": 1.0,
+        "effort": 1.0,
+        "name": "j",
+    },
+    "robots.DHTable": lambda: {
+        "name": "arm",
+        "convention": "standard",
+        "rows": (robots.DHRow(a=1.0),),
+        "base": robots.Placement(),
+        "tool": robots.Placement(),
+        "description": "",
+        "source": "",
+    },
+    "robots.DHTable.frames": lambda: {"q": [0.1, 0.2]},
+    "robots.DHTable.fk": lambda: {"q": [0.1, 0.2]},
+    "robots.Description": lambda: {"urdf": planar()[2], "source": "arm.urdf", "base": "fixed", "mimic": True},
+    "robots.Description.model": dict,
+    "robots.description_of": lambda: {"model": planar()[0]},
+    "robots.Placement": lambda: {"xyz": (0.0, 0.0, 0.0), "rpy": (0.0, 0.0, 0.0)},
+    "robots.read_table": lambda: {"path": written("arm.toml", DH), "parameters": {"l": 2.0}},
+    "robots.to_urdf": lambda: {"table": table()},
+    "robots.write_urdfs": lambda: {"folder": "urdf"},
+    # refiners
+    "refine.LM": lambda: {"rule": "chan", "scale": None, "patience": refine.Patience()},
+    "refine.LM.refine": refining,
+    "refine.QP": lambda: {
+        "solver": "osqp",
+        "damping": 0.02,
+        "largest": 1.0,
+        "posture": None,
+        "posture_weight": 0.02,
+        "tolerance": 1e-5,
+        "patience": refine.Patience(),
+    },
+    "refine.QP.refine": refining,
+    "refine.SDLS": lambda: {"largest": 0.7, "patience": refine.Patience()},
+    "refine.SDLS.refine": refining,
+    "refine.Newton": lambda: {"cutoff": 1e-3, "patience": refine.Patience()},
+    "refine.Newton.refine": refining,
+    "refine.Patience": lambda: {"iterations": 10, "steps": 4, "share": 0.5},
+    "refine.Transpose": lambda: {"patience": refine.Patience(2000, 50, 0.8)},
+    "refine.Transpose.refine": refining,
+    "refine.make_refiner": lambda: {"refiner": "dls"},
+    # stewart
+    "stewart.ClosedModel.leg": lambda: {"i": 0},
+    "stewart.ClosedModel.configuration": lambda: {"pose": LEVEL},
+    "stewart.ClosedModel.pose": lambda: {"q": closed().configuration(LEVEL)},
+    "stewart.ClosedModel.residual": lambda: {"q": closed().configuration(LEVEL)},
+    "stewart.ClosedModel.forward": lambda: {"lengths": lengths(), "start": LEVEL},
+    "stewart.ClosedModel.rates": lambda: {"pose": LEVEL},
+    "stewart.DesignTask": lambda: {
+        "ranges": stewart.Ranges(longest=(0.2, 0.3)),
+        "index": "gdi",
+        "threshold": 0.5,
+        "weights": (0.7, 0.3),
+        "cube": None,
+        "least_workspace": 0.0,
+        "joint_gap": 0.0,
+        "grid": stewart.Grid((3, 3, 3)),
+        "algorithm": "pso",
+        "evaluations": 60,
+        "seed": 0,
+        "from_current": False,
+    },
+    "stewart.Dexterity": lambda: {"norm": "two", "length": 0.1},
+    "stewart.Fitness": lambda: {"mechanism": mechanism()},
+    "stewart.Fitness.__call__": lambda: {
+        "X": fitness().variables.point(mechanism().geometry, mechanism().limits)[None]
+    },
+    "stewart.Fitness.cost": lambda: {"x": point(), "fine": False},
+    "stewart.Fitness.missing": lambda: {"dimensions": dimensions()},
+    "stewart.Fitness.build": lambda: {"dimensions": dimensions()},
+    "stewart.Fitness.workspace": lambda: {
+        "geometry": mechanism().geometry,
+        "limits": mechanism().limits,
+        "fine": False,
+    },
+    "stewart.Fitness.score": lambda: {"workspace": workspace()},
+    "stewart.Geometry": lambda: {
+        "base_radius": 0.2,
+        "platform_radius": 0.1,
+        "base_angles": mechanism().geometry.base_angles,
+        "platform_angles": mechanism().geometry.platform_angles,
+        "legs": mechanism().geometry.legs,
+        "reference": (0.0, 0.0, 0.0),
+    },
+    "stewart.Grid": lambda: {
+        "counts": (3, 3, 3),
+        "x": (-0.1, 0.1),
+        "y": (-0.1, 0.1),
+        "z": (0.2, 0.3),
+        "steps": (1, 1, 1),
+        "roll": (0.0, 0.0),
+        "pitch": (0.0, 0.0),
+        "yaw": (0.0, 0.0),
+    },
+    "stewart.Grid.at": lambda: {"xyz": (0.0, 0.0, 0.2), "steps": (3, 3, 1), "roll": (-0.1, 0.1)},
+    "stewart.LegLimits": lambda: {
+        "shortest": 0.2,
+        "longest": 0.3,
+        "base_angle": 1.0,
+        "platform_angle": 1.0,
+        "distance": 0.0,
+        "home": (0.0, 0.0, 0.2),
+    },
+    "stewart.LegLimits.sockets": lambda: {"geometry": mechanism().geometry},
+    "stewart.Mechanism": lambda: {
+        "name": "m",
+        "geometry": mechanism().geometry,
+        "limits": mechanism().limits,
+        "grid": stewart.Grid((3, 3, 3)),
+        "dexterity": stewart.Dexterity(),
+        "task": None,
+        "unit": "mm",
+        "description": "",
+        "source": "",
+    },
+    "stewart.Mechanism.survey": lambda: {"watch": None},
+    "stewart.Ranges": lambda: {
+        "base_radius": (0.1, 0.2),
+        "platform_radius": 0.1,
+        "base_angles": None,
+        "platform_angles": None,
+        "shortest": 0.2,
+        "longest": (0.2, 0.3),
+    },
+    "stewart.Trajectory": lambda: {"times": way().times, "poses": way().poses, "twists": way().twists},
+    "stewart.Trajectory.through": lambda: {"times": way().times, "poses": way().poses},
+    "stewart.Trajectory.at": lambda: {"times": [0.1, 0.5]},
+    "stewart.Workspace.dexterous": lambda: {"threshold": 0.1},
+    "stewart.Workspace.dexterous_volume": lambda: {"threshold": 0.1},
+    "stewart.Workspace.position_of": lambda: {"index": np.zeros((1, 3), dtype=int)},
+    "stewart.Workspace.poses_of": lambda: {"index": np.zeros((1, 4), dtype=int)},
+    "stewart.Workspace.poses": lambda: {"which": workspace().reached},
+    "stewart.all_forward": lambda: {"geometry": mechanism().geometry, "lengths": lengths(), "rng": 0},
+    "stewart.best_length": lambda: {"geometry": mechanism().geometry, "poses": LEVEL, "norm": "two"},
+    "stewart.characteristic_length": lambda: {
+        "geometry": mechanism().geometry,
+        "poses": LEVEL,
+        "dexterity": stewart.Dexterity(length="best"),
+    },
+    "stewart.closed_model": lambda: {"mechanism": mechanism()},
+    "stewart.conditioning": lambda: {
+        "geometry": mechanism().geometry,
+        "poses": LEVEL,
+        "dexterity": stewart.Dexterity(),
+    },
+    "stewart.crossings": lambda: {"geometry": mechanism().geometry, "trajectory": way()},
+    "stewart.design": lambda: {"mechanism": mechanism(), "rng": 0, "watch": None},
+    "stewart.draw": lambda: {"mechanism": mechanism(), "workspace": workspace(), "pose": LEVEL},
+    "stewart.draw_history": lambda: {"designed": stewart.design(mechanism())},
+    "stewart.draw_into": lambda: {
+        "figure": figure(),
+        "mechanism": mechanism(),
+        "workspace": None,
+        "pose": LEVEL,
+    },
+    "stewart.follow": lambda: {
+        "geometry": mechanism().geometry,
+        "trajectory": way(),
+        "limits": mechanism().limits,
+        "dexterity": stewart.Dexterity(),
+    },
+    "stewart.forward": lambda: {"geometry": mechanism().geometry, "lengths": lengths(), "start": LEVEL},
+    "stewart.homogenised": lambda: {
+        "geometry": mechanism().geometry,
+        "poses": LEVEL,
+        "dexterity": stewart.Dexterity(),
+    },
+    "stewart.jacobian": lambda: {"geometry": mechanism().geometry, "poses": LEVEL},
+    "stewart.judge_poses": lambda: {
+        "geometry": mechanism().geometry,
+        "limits": mechanism().limits,
+        "poses": LEVEL,
+    },
+    "stewart.leg_distances": lambda: {"geometry": mechanism().geometry, "poses": LEVEL},
+    "stewart.leg_lengths": lambda: {"geometry": mechanism().geometry, "poses": LEVEL},
+    "stewart.leg_vectors": lambda: {"geometry": mechanism().geometry, "poses": LEVEL},
+    "stewart.legs_of": lambda: {"connection": mechanism().geometry.connection},
+    "stewart.load_mechanism": lambda: {"name": "stroke_100"},
+    "stewart.mechanism_names": dict,
+    "stewart.pose_at": lambda: {"xyz": (0.0, 0.0, 0.2), "rpy": (0.0, 0.0, 0.0)},
+    "stewart.progress_bar": lambda: {"label": "x", "console": None},
+    "stewart.read_mechanism": lambda: {"path": stewart.save_mechanism(mechanism(), "saved.toml")},
+    "stewart.save_mechanism": lambda: {"mechanism": mechanism(), "path": "saved.toml"},
+    "stewart.save_picture": lambda: {"figure": figure(), "path": "saved.svg"},
+    "stewart.save_urdf": lambda: {"mechanism": mechanism(), "path": "saved.urdf"},
+    "stewart.singularities": lambda: {"workspace": workspace()},
+    "stewart.standard_geometry": lambda: {
+        "type": "6x6",
+        "base_radius": 0.2,
+        "platform_radius": 0.1,
+        "legs": 6,
+        "split": 0.2,
+    },
+    "stewart.straight": lambda: {"start": LEVEL, "end": LEVEL, "seconds": 1.0, "samples": 5},
+    "stewart.survey": lambda: {
+        "geometry": mechanism().geometry,
+        "limits": mechanism().limits,
+        "grid": stewart.Grid((3, 3, 3)),
+        "dexterity": stewart.Dexterity(),
+        "watch": None,
+    },
+    "stewart.to_toml": lambda: {"mechanism": mechanism()},
+    "stewart.to_urdf": lambda: {"mechanism": mechanism()},
+    # mobile
+    "mobile.ExactFitness": lambda: {"penalty": 12.0},
+    "mobile.ExactFitness.on": lambda: {"space": planning().space, "start": (0.0, 0.0), "goal": (5.0, 4.0)},
+    "mobile.PaperFitness": lambda: {
+        "penalty": 12.0,
+        "detour_penalty": 2.2,
+        "detour_limit": 3.0,
+        "detour_of": "segment",
+    },
+    "mobile.PaperFitness.on": lambda: {"space": planning().space, "start": (0.0, 0.0), "goal": (5.0, 4.0)},
+    "mobile.FreeSpace.of": lambda: {"scene": scene(), "clearance": 0.1, "join": "round"},
+    "mobile.FreeSpace.connects": lambda: {"start": (0.0, 0.0), "goal": (5.0, 4.0)},
+    "mobile.FreeSpace.nearly_connects": lambda: {"start": (0.0, 0.0), "goal": (5.0, 4.0)},
+    "mobile.FreeSpace.holds": lambda: {"path": path().points},
+    "mobile.FreeSpace.distance": lambda: {"path": path().points},
+    "mobile.FreeSpace.check": lambda: {"role": "start", "point": (0.0, 0.0)},
+    "mobile.LearnedTurn.tangent": lambda: {"v": 0.5, "theta": 1.0},
+    "mobile.LearnedTurn.knows": lambda: {"v": 0.5, "theta": 1.0},
+    "mobile.LearnedTurn.at": lambda: {"theta": np.array([1.0])},
+    "mobile.LearnedTurn.errors": dict,
+    "mobile.OccupancyGrid": lambda: {
+        "occupied": np.eye(3, dtype=bool),
+        "resolution": 0.5,
+        "origin": (0.0, 0.0, 0.0),
+    },
+    "mobile.OccupancyGrid.without_specks": lambda: {"cells": 2},
+    "mobile.Path": lambda: {"points": [[0.0, 0.0], [1.0, 1.0]]},
+    "mobile.Path.straightened": lambda: {"slack": 0.1},
+    "mobile.Path.write": lambda: {"file": "path.csv"},
+    "mobile.PathPlan.verify": dict,
+    "mobile.PathPlan.as_dict": dict,
+    "mobile.PathProblem.of": lambda: {"scene": scene(), "radius": 0.1, "margin": 0.1, "join": "round"},
+    "mobile.PathProblem.alternatives": lambda: {"count": 2},
+    "mobile.PathProblem.box": lambda: {"via": 2},
+    "mobile.PathProblem.through": lambda: {"x": np.array([1.0, 2.0])},
+    "mobile.Route.along": lambda: {
+        "path": path(),
+        "vehicle": mobile.NOMAD_200,
+        "obstacles": scene().obstacles,
+        "radius": 0.1,
+    },
+    "mobile.Route.straights": lambda: {"V": np.zeros((1, len(route().turns))), "tangents": None},
+    "mobile.Route.times": lambda: {"V": np.zeros((1, len(route().turns))), "tangents": None},
+    "mobile.Route.lack": lambda: {"V": np.zeros((1, len(route().turns))), "tangents": None},
+    "mobile.Route.clear_speed": lambda: {"corner": 0, "obstacles": scene().obstacles, "radius": 0.1},
+    "mobile.Scene": lambda: {
+        "start": (0.0, 0.0),
+        "goal": (5.0, 4.0),
+        "obstacles": [SQUARE],
+        "bounds": (-1.0, -1.0, 6.0, 6.0),
+        "name": "s",
+    },
+    "mobile.Scene.between": lambda: {"start": (0.0, 1.0), "goal": (4.0, 4.0)},
+    "mobile.Scene.as_dict": dict,
+    "mobile.SynchroDrive": lambda: {
+        "name": "r",
+        "v_max": 1.0,
+        "a_max": 1.0,
+        "omega_max": 1.0,
+        "alpha_max": 1.0,
+        "radius": 0.2,
+    },
+    "mobile.Trajectory": lambda: {"phases": [Phase(1.0, 0.5)], "start": (0.0, 0.0, 0.0)},
+    "mobile.Trajectory.at": lambda: {"t": [0.1, 0.2]},
+    "mobile.Trajectory.sample": lambda: {"dt": 0.5},
+    "mobile.Trajectory.write_csv": lambda: {"file": "trajectory.csv", "dt": 0.5},
+    "mobile.Trajectory.write_json": lambda: {"file": "trajectory.json", "dt": 0.5},
+    "mobile.Trajectory.as_dict": lambda: {"dt": 0.5},
+    "mobile.TrajectoryPlan.as_dict": lambda: {"dt": 0.5},
+    "mobile.Visibility": lambda: {"space": planning().space},
+    "mobile.Visibility.nodes": lambda: {"start": (0.0, 0.0), "goal": (5.0, 4.0)},
+    "mobile.Visibility.inside": lambda: {"a": [[0.0, 0.0]], "b": [[1.0, 1.0], [5.0, 4.0]]},
+    "mobile.Visibility.between": lambda: {"start": (0.0, 0.0), "goal": (5.0, 4.0)},
+    "mobile.configurations": lambda: {"samples": motion().trajectory.sample(0.5)},
+    "mobile.velocities": lambda: {"samples": motion().trajectory.sample(0.5)},
+    "mobile.fastest_trajectory": lambda: {
+        "scene": scene(),
+        "vehicle": mobile.NOMAD_200,
+        "paths": 1,
+        "margins": (0.1,),
+        "join": "mitre",
+    },
+    "mobile.grid_of": lambda: {
+        "values": [[0.0, 1.0], [0.0, 0.0]],
+        "threshold": 0.5,
+        "unknown": "free",
+        "unknown_blocks": None,
+        "resolution": 0.5,
+        "origin": (0.0, 0.0, 0.0),
+    },
+    "mobile.learn_turn": lambda: {
+        "vehicle": mobile.NOMAD_200,
+        "design": "log",
+        "hidden": (2,),
+        "trainer": "lm",
+        "iterations": 2,
+        "points": np.column_stack((np.linspace(0.1, 1.0, 30), np.linspace(0.1, 3.0, 30))),
+        "rng": 0,
+        "callback": None,
+    },
+    "mobile.load_scene": lambda: {
+        "source": saved_grid(),
+        "start": (0.1, 1.2),
+        "goal": (1.2, 0.1),
+        "unknown": "free",
+        "resolution": 0.5,
+        "threshold": 0.5,
+        "specks": 1,
+    },
+    "mobile.load_vehicle": lambda: {"source": "nomad200"},
+    "mobile.mobile_robot": lambda: {"vehicle": mobile.NOMAD_200, "height": 0.8},
+    "mobile.plan_alternatives": lambda: {"problem": planning(), "count": 2},
+    "mobile.plan_path": lambda: {
+        "problem": planning(),
+        "method": "de",
+        "fitness": "exact",
+        "via": 2,
+        "budget": FEW,
+        "rng": 0,
+        "seeded": False,
+        "trace": False,
+        "callback": None,
+    },
+    "mobile.plan_trajectory": lambda: {
+        "path": path(),
+        "vehicle": mobile.NOMAD_200,
+        "obstacles": scene().obstacles,
+        "method": "dp",
+        "radius": 0.1,
+        "algorithm": "de",
+        "budget": FEW,
+        "rng": 0,
+        "model": None,
+        "callback": None,
+    },
+    "mobile.random_scene": lambda: {
+        "obstacles": 3,
+        "rng": 0,
+        "size": 10.0,
+        "fill": 0.1,
+        "gap": 0.1,
+        "start": (0.5, 0.5),
+        "goal": (9.5, 9.5),
+    },
+    "mobile.read_grid": lambda: {
+        "path": saved_grid(),
+        "unknown": "free",
+        "unknown_blocks": None,
+        "threshold": 0.5,
+        "resolution": 0.5,
+    },
+    "mobile.read_obstacles": lambda: {"source": [SQUARE]},
+    "mobile.read_polygons": lambda: {"source": [SQUARE]},
+    "mobile.scene_names": dict,
+    "mobile.shortest_path": lambda: {
+        "space": planning().space,
+        "start": (0.0, 0.0),
+        "goal": (5.0, 4.0),
+        "visibility": None,
+    },
+    "mobile.shortest_paths": lambda: {
+        "space": planning().space,
+        "start": (0.0, 0.0),
+        "goal": (5.0, 4.0),
+        "count": 2,
+        "visibility": None,
+    },
+    # compare
+    "compare.Case": lambda: {
+        "name": "mine",
+        "about": "Mine.",
+        "draw": compare.CASES["random"].draw,
+        "chain": compare.CASES["random"].chain,
+        "world": None,
+        "judge": compare.CASES["random"].judge,
+        "success": "Reached.",
+    },
+    "compare.Case.lacks": lambda: {"robot": ur5(), "rng": rng()},
+    "compare.Case.task": lambda: {"chain": chain(), "world": None, "rng": rng()},
+    "compare.Replay.lines": dict,
+    "compare.Results.of": lambda: {"robot": "ur5", "case": "random", "method": "lm"},
+    "compare.Results.spent": lambda: {"case": "random", "method": "lm"},
+    "compare.Results.costs": lambda: {"case": "random", "robot": "ur5"},
+    "compare.Search": lambda: {"name": "lm", "seeder": None, "refiner": "lm_chan", "starts": 1},
+    "compare.Search.solve": lambda: {"problem": problem(), "x0": np.array(X6), "budget": 50, "rng": rng()},
+    "compare.Suite": lambda: {
+        "robots": ("ur5",),
+        "cases": ("random",),
+        "methods": ("lm",),
+        "targets": 1,
+        "seeds": 1,
+        "budget": 50,
+        "rng": 0,
+    },
+    "compare.Suite.absent": dict,
+    "compare.Suite.units": lambda: {"done": frozenset(), "absent": ()},
+    "compare.Task.at": lambda: {"chain": chain(), "X": np.array([X6]), "start": None},
+    "compare.Trial.row": dict,
+    "compare.Trial.of": lambda: {"row": trial().row()},
+    "compare.compare": lambda: {
+        "suite": suite(),
+        "folder": folder(),
+        "jobs": 1,
+        "backend": "loky",
+        "scheduler": None,
+        "command": "c",
+        "console": None,
+    },
+    "compare.read_results": lambda: {"folder": folder()},
+    "compare.replay": lambda: {"folder": folder(), "name": "ur5/random/0/lm/0"},
+    "compare.summarise": lambda: {"trials": [trial()]},
+    "compare.write_report": lambda: {"folder": folder()},
+    # registries
+    "ALGORITHMS.gwo": lambda: {"agents": 30},
+    "ALGORITHMS.igwo": lambda: {"agents": 30},
+    "ALGORITHMS.mtde": lambda: {
+        "agents": 50,
+        "patience": 20,
+        "a2_initial": 0.001,
+        "a2_final": 2.0,
+        "scale": 0.5,
+        "spread": 0.2,
+    },
+    "ALGORITHMS.sfla": lambda: {
+        "frogs": 200,
+        "memeplexes": 20,
+        "leaps": 10,
+        "leap": 1.3,
+        "largest_leap": 1.0,
+        "fallbacks": True,
+        "leapers": "worst",
+    },
+    "ALGORITHMS.de": lambda: {"agents": 50, "F": 0.5, "CR": 0.9, "strategy": "rand/1/bin"},
+    "ALGORITHMS.pso": lambda: {
+        "agents": 40,
+        "variant": "constriction",
+        "c1": None,
+        "c2": None,
+        "w_max": 0.9,
+        "w_min": 0.4,
+        "chi": 0.7298,
+        "v_max": 0.5,
+    },
+    "ALGORITHMS.qpso": lambda: {"agents": 40, "beta_start": 1.0, "beta_end": 0.5},
+    "ALGORITHMS.ga": lambda: {
+        "agents": 100,
+        "crossover_rate": 0.9,
+        "mutation_rate": 0.2,
+        "elites": 1,
+        "selection": "roulette",
+        "crossover": "one-point",
+    },
+    "ALGORITHMS.cmaes": lambda: {"agents": None, "sigma": 0.3, "growth": 2.0},
+    "TRAINERS.lm": lambda: {"mu": 0.001, "up": 10.0, "down": 0.1},
+    "TRAINERS.minpack": lambda: {"tolerance": 1e-16},
+    "TRAINERS.bfgs": lambda: {"tolerance": 1e-12},
+    "TRAINERS.rprop": lambda: {"up": 1.2, "down": 0.5, "first": 0.07, "least": 1e-12, "most": 50.0},
+    "TRAINERS.scg": lambda: {"sigma": 5e-5, "lamda": 5e-7},
+}
+
+
+def saved_grid() -> Path:
+    """An occupancy grid as a file in the folder one is in."""
+    file = Path("grid.npy")
+    np.save(file, np.eye(3, dtype=np.int8))
+    return file

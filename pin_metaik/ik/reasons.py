@@ -1,0 +1,62 @@
+"""Why a target is not met, in words: what is out of reach and of what, which joints cannot move, what collides."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.collision import CollisionWorld, Contact
+from pin_metaik.ik.problem import IKProblem
+from pin_metaik.kinematics import Chain
+
+SHOWN = 3  # contacts in a sentence
+
+
+def out_of_reach(problem: IKProblem) -> str:
+    """What is proved to be out of reach: the frame, the wrist behind it, or all if no joint can move."""
+    if problem.limits.rigid:
+        return f"out of reach: {cannot_move(problem)}"
+    gaps = [max(problem.gaps(t)) for t in range(len(problem.targets))]
+    t = int(np.argmax(gaps))
+    at, behind = problem.gaps(t)
+    whose = f"{problem.chain.frames[t]} is " if len(gaps) > 1 else ""
+    if at > 0.0:
+        return f"{whose}out of reach: at least {at:.3g} m beyond what the links can span"
+    return (
+        f"{whose}out of reach with this orientation: it puts the wrist, a point of the last joint's axis, at least "
+        f"{behind:.3g} m beyond what the links before it can span"
+    )
+
+
+def no_branch(problem: IKProblem, x: NDArray[np.float64]) -> str:
+    """That the closed form of an arm has no solution, where that cut the search from x (n,) short."""
+    return "the arm's closed form has no solution inside the limits; " if problem.branchless(x) else ""
+
+
+def cannot_move(problem: IKProblem) -> str:
+    """The joints that cannot move, because their limits leave them no range; empty if there are none."""
+    stuck = problem.limits.stuck
+    if not stuck:
+        return ""
+    return f"{', '.join(stuck)} cannot move: {'its' if len(stuck) == 1 else 'their'} limits are equal"
+
+
+def collisions(chain: Chain, world: CollisionWorld | None, contacts: Sequence[Contact]) -> str:
+    """What collides, and of bodies that the chain does not move what would help."""
+    said = "; ".join(str(one) + _remedy(chain, world, one) for one in contacts[:SHOWN])
+    return said + ("; ..." if len(contacts) > SHOWN else "")
+
+
+def _remedy(chain: Chain, world: CollisionWorld | None, contact: Contact) -> str:
+    """What to do about two bodies that the chain does not move; empty if it moves one of them."""
+    if world is None:
+        return ""
+    supports = chain.model.supports
+    on = [body.joint for body in world.checker.bodies if body.link in (contact.first, contact.second)]
+    ways = {j for joint in on for j in supports[joint] if j}
+    if ways & chain.movers:
+        return ""
+    move = "move it in q0" if ways else "move the obstacle"
+    return f" (neither moves with the chain: {move}, or world.allow({contact.first!r}, {contact.second!r}))"

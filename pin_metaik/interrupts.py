@@ -1,0 +1,88 @@
+"""Ctrl-C: it reaches the caller, whatever runs meanwhile makes of it, and what a search has in hand goes with it."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Callable
+from types import FrameType
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+U = TypeVar("U")
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C, with what was found until then: for whoever wants it; to everybody else it is a ``KeyboardInterrupt``.
+
+    Attributes:
+        result: What the call would have returned had its search ended there; it says that it was interrupted.
+    """
+
+    def __init__(self, result: object) -> None:
+        self.result: Any = result
+        super().__init__("interrupted: the best so far is the `result` of this exception")
+
+
+def kept(call: Callable[[], T]) -> T:
+    """What a call returns, or at Ctrl-C what it had in hand.
+
+    Raises:
+        KeyboardInterrupt: If it had nothing yet.
+    """
+    try:
+        return call()
+    except Interrupted as stop:
+        found: T = stop.result
+        return found
+
+
+def wrapped(search: Callable[[], T], wrap: Callable[[T], U]) -> U:
+    """What a search finds, wrapped; at Ctrl-C what it had in hand is wrapped, too.
+
+    Raises:
+        Interrupted: Ctrl-C, when the search had something in hand.
+    """
+    try:
+        found = search()
+    except Interrupted as stop:
+        raise Interrupted(wrap(stop.result)) from None
+    return wrap(found)
+
+
+class Pressed:
+    """Notes Ctrl-C while it is entered, and raises ``KeyboardInterrupt`` where one was swallowed.
+
+    Some code catches everything: a method of somebody else's, which would then give an answer that a clean run would
+    not, or a callback that C calls, whose exceptions Python drops. Signals come to the main thread: in another one this
+    does nothing.
+    """
+
+    def __init__(self) -> None:
+        self._heard = False
+        self._before: Any = None
+
+    def __enter__(self) -> Pressed:
+        """Listen, and hand on to whoever listened before."""
+        if threading.current_thread() is threading.main_thread():
+            self._before = signal.getsignal(signal.SIGINT)
+            if callable(self._before):
+                signal.signal(signal.SIGINT, self._note)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if callable(self._before):
+            signal.signal(signal.SIGINT, self._before)
+
+    def check(self) -> None:
+        """Raise if there was a Ctrl-C.
+
+        Raises:
+            KeyboardInterrupt: There was one.
+        """
+        if self._heard:
+            raise KeyboardInterrupt
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        self._heard = True
+        self._before(number, frame)

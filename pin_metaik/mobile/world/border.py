@@ -1,0 +1,78 @@
+"""The border of a region of polygons as flat arrays, as loops over all its vertices want it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from pin_metaik.optimize.space import Array
+
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Border:
+    """The border of a region, ring after ring; the region is on the left of every edge.
+
+    Attributes:
+        vertices: (n, 2).
+        before: The vertex before along the ring (n,).
+        after: The vertex after along the ring (n,); edge k goes from vertex k to ``after[k]``.
+        slack: How far from a line a point still counts as on it.
+    """
+
+    vertices: Array
+    before: Indices
+    after: Indices
+    slack: float
+
+    @staticmethod
+    def of(region: shapely.Geometry, slack: float) -> Border:
+        """The border of polygons."""
+        outlines = list(rings(region))
+        first = np.cumsum([0, *map(len, outlines)])
+        before = [start + (np.arange(len(ring)) - 1) % len(ring) for start, ring in zip(first, outlines, strict=False)]
+        vertices = np.ascontiguousarray(np.concatenate([np.empty((0, 2)), *outlines]))
+        back = np.concatenate([np.empty(0, dtype=np.int64), *before])
+        on = np.empty_like(back)
+        on[back] = np.arange(len(back))
+        return Border(vertices, back, on, slack)
+
+    @property
+    def arrays(self) -> tuple[Array, Indices, Indices]:
+        """What every kernel takes first."""
+        return self.vertices, self.before, self.after
+
+    @cached_property
+    def edges(self) -> Array:
+        """Vectors along the edges (n, 2)."""
+        return np.asarray(self.vertices[self.after] - self.vertices)
+
+    @cached_property
+    def bends(self) -> NDArray[np.bool_]:
+        """Whether a shortest path can bend at a vertex (n,): the border turns right, by more than rounding."""
+        u, v = self.edges[self.before], self.edges
+        x, y = (u + v).T
+        length = np.hypot(x, y)
+        right: NDArray[np.bool_] = np.where(
+            length > 0, x * u[:, 1] - y * u[:, 0] > self.slack * length, u[:, 0] * v[:, 1] < u[:, 1] * v[:, 0]
+        )
+        return right
+
+    @cached_property
+    def corners(self) -> Indices:
+        """Indices (c,) of the vertices a shortest path can bend at."""
+        return np.flatnonzero(self.bends)
+
+
+def rings(region: shapely.Geometry) -> Iterator[Array]:
+    """The rings of a polygon or several, each (n, 2) without the repeated vertex and with the inside on its left."""
+    for polygon in shapely.get_parts(region):
+        for ring, left in ((polygon.exterior, True), *((hole, False) for hole in polygon.interiors)):
+            vertices = shapely.get_coordinates(ring)[:-1]
+            yield vertices if ring.is_ccw == left else vertices[::-1]

@@ -1,0 +1,115 @@
+"""Pixels of images, as maps are drawn: PGM without help, everything else (PNG, BMP, TIFF ...) with Pillow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.errors import InvalidGeometry, MissingExtra
+from pin_metaik.optimize.space import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Pixels:
+    """An image, row 0 the highest.
+
+    Attributes:
+        colours: Lightness of the channels (rows, columns, c) from 0, black, to 1: c is 1 for grey, 3 for red, green and
+            blue.
+        opacity: From 0, transparent, to 1 (rows, columns); None if the image has none.
+    """
+
+    colours: Array
+    opacity: Array | None = None
+
+    @property
+    def lightness(self) -> Array:
+        """Mean of the channels (rows, columns)."""
+        return np.asarray(self.colours.mean(axis=2))
+
+
+def read_image(path: Path) -> Pixels:
+    """The pixels of an image.
+
+    Raises:
+        InvalidGeometry: The file is missing or no image.
+        MissingExtra: It needs Pillow, which is not installed.
+    """
+    try:
+        data = path.read_bytes()
+    except OSError as reason:
+        raise InvalidGeometry(f"cannot read {path}: {reason.strerror}") from None
+    if data[:2] in (b"P2", b"P5"):
+        return Pixels(read_pgm(data, path)[:, :, None])
+    if find_spec("PIL") is None:
+        raise MissingExtra(f"reading {path}", "mobile")
+    from PIL import Image, UnidentifiedImageError
+
+    try:
+        with Image.open(path) as image:
+            return _pixels(image)
+    except UnidentifiedImageError:
+        raise InvalidGeometry(f"{path} is not an image: a map is a PGM, a PNG or what else Pillow reads") from None
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as reason:
+        raise InvalidGeometry(f"{path} is no image that can be read, or ends early: {reason}") from None
+
+
+def _pixels(image: Any) -> Pixels:
+    """The pixels of Pillow's image: palettes as their colours, 16 bits as 16 bits."""
+    if image.mode.startswith("I"):
+        return Pixels(np.asarray(image, dtype=float)[:, :, None] / 65535)
+    if image.mode in ("1", "L") and "transparency" not in image.info:
+        return Pixels(np.asarray(image.convert("L"), dtype=float)[:, :, None] / 255)
+    if image.mode == "RGB" and "transparency" not in image.info:
+        return Pixels(np.asarray(image, dtype=float) / 255)
+    opaque = image.mode in ("CMYK", "YCbCr", "HSV", "LAB", "F") or (
+        image.mode == "P" and "transparency" not in image.info
+    )
+    if opaque:
+        return Pixels(np.asarray(image.convert("RGB"), dtype=float) / 255)
+    channels = np.asarray(image.convert("RGBA"), dtype=float) / 255
+    return Pixels(channels[:, :, :3], channels[:, :, 3])
+
+
+def read_pgm(data: bytes, path: Path) -> NDArray[np.float64]:
+    """Lightness (rows, columns) from 0 (black) to 1 of a PGM image, plain (P2) or raw (P5), row 0 the highest.
+
+    Args:
+        data: What is in the file.
+        path: The file, for messages.
+
+    Raises:
+        InvalidGeometry: It is not a PGM image.
+    """
+    header: list[bytes] = []
+    at = 0
+    while len(header) < 4 and at < len(data):  # magic, columns, rows, maximum; a # starts a comment
+        if data[at : at + 1] == b"#":
+            at = data.find(b"\n", at) % (len(data) + 1)
+        elif data[at : at + 1].isspace():
+            at += 1
+        else:
+            end = next((i for i in range(at, len(data)) if data[i : i + 1].isspace()), len(data))
+            header.append(data[at:end])
+            at = end
+    size = [int(field) if field.isdigit() else 0 for field in header[1:]]
+    if len(size) < 3 or min(size) < 1 or size[2] > 65535:
+        raise InvalidGeometry(f"{path} is not a PGM image: after P2 or P5 come its columns, rows and largest value")
+    columns, rows, maximum = size
+    try:
+        if header[0] == b"P2":
+            pixels = np.array(data[at:].split(), dtype=float)
+        else:
+            deep = np.dtype(np.uint8 if maximum < 256 else ">u2")
+            held = data[at + 1 : at + 1 + rows * columns * deep.itemsize]
+            pixels = np.frombuffer(held[: len(held) // deep.itemsize * deep.itemsize], dtype=deep).astype(float)
+    except ValueError as reason:
+        raise InvalidGeometry(f"{path} is not a PGM image: {reason}") from None
+    if pixels.size < rows * columns:
+        raise InvalidGeometry(f"{path} ends early: {pixels.size} pixels for {columns} x {rows}")
+    return pixels[: rows * columns].reshape(rows, columns) / maximum

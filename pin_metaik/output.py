@@ -1,0 +1,49 @@
+"""Output is looked for before the work begins: what cannot be written is told by name, not found out afterwards."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from pin_metaik.errors import CannotWrite
+
+
+def writable(path: str | Path, *, folder: bool = False) -> Path:
+    """The path of a file that can be written, or of a folder that can be made and written into.
+
+    Nothing is left behind: a file that was not there is not there afterwards either.
+
+    Args:
+        path: Of the file, in a folder that exists; or of the folder.
+        folder: Whether it is a folder.
+
+    Raises:
+        CannotWrite: It is not; the message says why.
+    """
+    where = Path(path)
+    try:
+        return _folder(where) if folder else _file(where)
+    except OSError as error:
+        raise CannotWrite(f"cannot write {where}: {error.strerror or error}") from None
+
+
+def _folder(where: Path) -> Path:
+    there = next(parent for parent in (where, *where.absolute().parents) if parent.exists())
+    if not there.is_dir():
+        raise CannotWrite(f"cannot write into {where}: {there} is a file, not a folder")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise CannotWrite(f"cannot write into {where}: {there} is read-only")
+    return where
+
+
+def _file(where: Path) -> Path:
+    if where.is_dir():
+        raise CannotWrite(f"cannot write {where}: it is a folder; name a file in it, e.g. {where / 'FILE'}")
+    if not where.parent.is_dir():
+        raise CannotWrite(f"cannot write {where}: there is no folder {where.parent}")
+    there = where.exists()
+    with where.open("ab"):  # says what stands in the way
+        pass
+    if not there:
+        where.unlink()
+    return where
