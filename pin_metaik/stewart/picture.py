@@ -14,7 +14,7 @@ from pin_metaik.optimize.space import Array
 from pin_metaik.output import writable
 from pin_metaik.stewart.body import body_of, draw_body, polygons
 from pin_metaik.stewart.design import Designed
-from pin_metaik.stewart.geometry import on_circle
+from pin_metaik.stewart.geometry import Geometry, on_circle
 from pin_metaik.stewart.inverse import leg_vectors
 from pin_metaik.stewart.mechanism import Mechanism
 from pin_metaik.stewart.poses import PoseLike, one_pose, pose_at
@@ -162,13 +162,13 @@ def _mechanism(axes: Any, mechanism: Mechanism, T: Array, scale: float) -> None:
     """Plates as polygons of their joints on their circles, legs as cylinder and rod, joints as dots."""
     geometry = mechanism.geometry
     R, P = T[:3, :3], T[:3, 3]
-    round_about = np.linspace(0.0, 2 * np.pi, 73)
-    moving = on_circle(geometry.platform_radius, round_about) - np.array(geometry.reference)
-    axes.plot(*(scale * on_circle(geometry.base_radius, round_about)).T, color=STEEL, lw=1, alpha=0.5)
-    axes.plot(*(scale * (P + moving @ R.T)).T, color=PLATE, lw=1, alpha=0.6)
     platform_joints = P + geometry.platform_joints @ R.T
-    _plate(axes, scale * geometry.base_joints, STEEL)
-    _plate(axes, scale * platform_joints, PLATE)
+    rings = _rings(geometry)
+    for ring, joints, colour, at in zip(
+        rings, (geometry.base_joints, platform_joints), (STEEL, PLATE), (np.eye(4), T), strict=True
+    ):
+        axes.plot(*(scale * (at[:3, 3] + ring @ at[:3, :3].T)).T, color=colour, lw=1, alpha=0.6)
+        _plate(axes, scale * joints, colour)
     for i, (b, v) in enumerate(zip(geometry.b, leg_vectors(geometry, T)[0], strict=True), start=1):
         share = min(1.0, 0.9 * mechanism.limits.shortest / max(float(np.linalg.norm(v)), 1e-12))
         axes.plot(*(scale * np.array([b, b + share * v])).T, color=STEEL, lw=4, solid_capstyle="round")
@@ -187,6 +187,14 @@ def _mechanism(axes: Any, mechanism: Mechanism, T: Array, scale: float) -> None:
             label.set(ha="center", va="center", path_effects=_halo())
 
 
+def _rings(geometry: Geometry) -> tuple[Array, Array]:
+    """Points (k, 3) of the circles of both sides in their frames; none for joints anywhere."""
+    round_about = np.linspace(0.0, 2 * np.pi, 73)
+    base = on_circle(geometry.base_radius, round_about)
+    moving = on_circle(geometry.platform_radius, round_about) + geometry.platform_centre
+    return base[: 0 if geometry.base else None], moving[: 0 if geometry.platform else None]
+
+
 def _halo() -> list[Any]:
     """A white edge round letters, so that what is behind them does not hide them."""
     effects = import_module("matplotlib.patheffects")
@@ -194,6 +202,9 @@ def _halo() -> list[Any]:
 
 
 def _plate(axes: Any, corners: Array, colour: str) -> None:
+    """A plate through its joints, taken round their middle."""
+    out = corners - corners.mean(axis=0)
+    corners = corners[np.argsort(np.arctan2(out[:, 1], out[:, 0]))]
     axes.add_collection3d(polygons([corners], facecolor=colour, alpha=0.22, edgecolor=colour))
 
 

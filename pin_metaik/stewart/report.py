@@ -34,12 +34,13 @@ def describe(mechanism: Mechanism) -> Lines:
     """Its dimensions and limits."""
     geometry, limits = mechanism.geometry, mechanism.limits
     lines = [("type", str(geometry))]
-    for side, radius, angles in (
-        ("base", geometry.base_radius, geometry.base_angles),
-        ("platform", geometry.platform_radius, geometry.platform_angles),
-    ):
-        shown = ", ".join(f"{degrees(angle):.6g}" for angle in angles)
-        lines.append((side, f"radius {in_unit(mechanism, radius)}, joints at {shown} deg"))
+    for side, letter in (("base", "B"), ("platform", "M")):
+        if (joints := getattr(geometry, side)) is not None:
+            places = (in_unit(mechanism, joint) for joint in joints)
+            lines += [(side, f"{letter}{k} at {place}") for k, place in enumerate(places, start=1)]
+            continue
+        shown = ", ".join(f"{degrees(angle):.6g}" for angle in getattr(geometry, f"{side}_angles"))
+        lines.append((side, f"radius {in_unit(mechanism, getattr(geometry, f'{side}_radius'))}, joints at {shown} deg"))
     if any(geometry.reference):
         lines.append(("reference", f"{in_unit(mechanism, geometry.reference)} from the centre of the platform"))
     lines.append(("joint gap", in_unit(mechanism, geometry.joint_gap)))
@@ -49,6 +50,10 @@ def describe(mechanism: Mechanism) -> Lines:
             lines.append((name, f"up to {degrees(angle):.6g} deg"))
     if limits.distance > 0.0:
         lines.append(("legs apart", f"at least {in_unit(mechanism, limits.distance)}"))
+    if limits.dead_length is not None:
+        lines.append(("dead length", in_unit(mechanism, limits.dead_length)))
+    if limits.speed is not None:
+        lines.append(("speed of legs", f"up to {in_unit(mechanism, limits.speed)}/s"))
     return lines
 
 
@@ -62,7 +67,7 @@ def notes(mechanism: Mechanism, workspace: Workspace | None = None) -> list[str]
             f"{geometry.n} legs between universal and spherical joints leave the platform {free} "
             f"freedom{'s' if free > 1 else ''}: they do not hold it, and dexterity says only how they act on it"
         )
-    if limits.stroke > limits.shortest:
+    if limits.stroke > limits.shortest and limits.dead_length is None:
         said.append(
             f"a stroke of {in_unit(mechanism, limits.stroke)} does not fit into a leg that is "
             f"{in_unit(mechanism, limits.shortest)} long when retracted, unless it telescopes in several stages"
@@ -125,6 +130,9 @@ def along(mechanism: Mechanism, way: Trajectory) -> Lines:
         ("fastest leg", f"{in_unit(mechanism, np.abs(motion.rates).max())}/s"),
         ("lowest nu", f"{motion.nu.min():.4g}"),
     ]
+    if (least := motion.least_seconds) is not None:
+        enough = "slow enough" if not motion.too_fast.any() else "too fast for the legs"
+        lines.append(("speed", f"{enough}: this way takes them {least:.6g} s at least"))
     for state in PoseState:
         if (share := float((motion.states == state).mean())) > 0.0:
             lines.append(("way", f"{100 * share:6.2f} %  {state.words}"))
@@ -202,5 +210,7 @@ def way_values(mechanism: Mechanism, way: Trajectory) -> dict[str, Any]:
         "nu": motion.nu.tolist(),
         "states": [PoseState(int(state)).name.lower() for state in motion.states],
         "reached": bool(motion.reached.all()),
+        "too_fast": bool(motion.too_fast.any()),
+        "least_seconds": motion.least_seconds,
         "singular": [{"time": c.time, "pose": c.pose.tolist(), "sign_changes": c.crosses} for c in met],
     }
