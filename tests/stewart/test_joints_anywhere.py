@@ -160,7 +160,7 @@ def test_joints_are_designed_one_by_one():
     start = calibrated(apart=0.03)
     spans = tuple(tuple((value - 0.03, value + 0.03) for value in joint) for joint in start.base)
     task = DesignTask(
-        Ranges(base=spans), algorithm=PSO(agents=20), evaluations=400, from_current=True, joint_gap=0.03, seed=1
+        Ranges(base=spans), algorithm=PSO(agents=20), evaluations=400, from_current=True, joint_gap=0.02, seed=1
     )
     mechanism = Mechanism("free", start, LegLimits(0.35, 0.47), task=task)
     before = design(replace(mechanism, task=replace(task, evaluations=1))).score.fitness
@@ -169,7 +169,7 @@ def test_joints_are_designed_one_by_one():
     joints = np.array(found.mechanism.geometry.base)
     assert (np.abs(joints - np.array(start.base)) <= 0.03 + 1e-12).all()
     assert found.mechanism.geometry.platform == start.platform
-    assert found.mechanism.geometry.joint_gap >= 0.03
+    assert found.mechanism.geometry.joint_gap >= 0.02
 
 
 def test_a_design_may_give_up_a_circle_and_keeps_a_dead_length():
