@@ -18,6 +18,7 @@ from pin_metaik.stewart.geometry import Geometry, on_circle
 from pin_metaik.stewart.inverse import leg_vectors
 from pin_metaik.stewart.mechanism import Mechanism
 from pin_metaik.stewart.poses import PoseLike, one_pose, pose_at
+from pin_metaik.stewart.trajectory import Motion
 from pin_metaik.stewart.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -100,6 +101,83 @@ def draw_into(
         gdi = "no GDI: singular" if workspace.gdi is None else f"GDI {workspace.gdi:.3f}"
         axes.set_title(f"{body.title}, {gdi}", fontsize=11)
         _dress(axes, body.labels)
+
+
+@checked
+def draw_above(mechanism: Mechanism, pose: PoseLike | None = None) -> Figure:
+    """A mechanism seen from above: where the joints of both sides are, and the legs between them.
+
+    Args:
+        mechanism: What to draw.
+        pose: Where the platform is; default: level over the base at half stroke.
+
+    Raises:
+        InvalidTarget: Not a pose.
+        MissingExtra: matplotlib is not installed.
+    """
+    T = one_pose(_middle(mechanism, None) if pose is None else pose)
+    geometry, scale = mechanism.geometry, 1.0 / mechanism.metres
+    figure = _figure((6.4, 6.0))
+    axes: Any = figure.add_subplot(aspect="equal")
+    moved = T[:3, 3] + geometry.platform_joints @ T[:3, :3].T
+    for i, (b, v) in enumerate(zip(geometry.b, leg_vectors(geometry, T[None])[0], strict=True), start=1):
+        axes.plot(*(scale * np.array([b, b + v])[:, :2]).T, color=ROD, lw=1.6)
+        axes.text(*(scale * (b + 0.5 * v)[:2]), f"{i}", fontsize=8, color=STEEL, ha="center", va="center", bbox=TAG)
+    base_ring, moving_ring = _rings(geometry)
+    aside = 0.07 * (geometry.base_radius + geometry.platform_radius)
+    sides = ((geometry.base_joints, base_ring, "B", STEEL), (moved, T[:3, 3] + moving_ring @ T[:3, :3].T, "M", PLATE))
+    for joints, ring, letter, colour in sides:
+        axes.plot(*(scale * ring[:, :2]).T, color=colour, lw=1, alpha=0.6)
+        axes.scatter(*(scale * joints[:, :2]).T, color=colour, s=36, zorder=3)
+        middle = joints.mean(axis=0)
+        for k, joint in enumerate(joints, start=1):
+            outward = joint - middle
+            place = scale * (joint + aside * outward / max(float(np.linalg.norm(outward)), 1e-12))[:2]
+            label = axes.text(*place, f"{letter}{k}", color=colour, fontsize=10, fontweight="bold", zorder=4)
+            label.set(ha="center", va="center", path_effects=_halo())
+    axes.set_xlabel(f"x ({mechanism.unit})")
+    axes.set_ylabel(f"y ({mechanism.unit})")
+    axes.set_title(f"{mechanism.name} ({geometry.type}) from above", fontsize=11)
+    axes.margins(0.12)
+    axes.grid(alpha=0.3)
+    return figure
+
+
+@checked
+def draw_motion(motion: Motion, mechanism: Mechanism) -> Figure:
+    """What the legs do along a trajectory: their lengths and rates over time with their limits, and dexterity.
+
+    Args:
+        motion: What ``follow`` found.
+        mechanism: Whose legs they are, for its limits and its unit of length.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+    """
+    figure = _figure((7.2, 7.2))
+    panels = figure.subplots(3, sharex=True)
+    times, limits, scale = motion.trajectory.times, mechanism.limits, 1.0 / mechanism.metres
+    curves = ((scale * motion.lengths, "length", mechanism.unit), (scale * motion.rates, "rate", f"{mechanism.unit}/s"))
+    for axes, (values, what, unit) in zip(panels, curves, strict=False):
+        for i, column in enumerate(values.T, start=1):
+            axes.plot(times, column, lw=1.4, label=f"leg {i}")
+        axes.set_ylabel(f"{what} of legs ({unit})")
+    speeds = () if limits.speed is None else (-limits.speed, limits.speed)
+    for axes, ends in zip(panels, ((limits.shortest, limits.longest), speeds), strict=False):
+        for end in ends:
+            axes.axhline(scale * end, color=STEEL, ls="--", lw=1)
+    panels[2].plot(times, motion.nu, color=PLATE)
+    panels[2].set_ylabel("dexterity nu")
+    panels[2].set_xlabel("time (s)")
+    panels[2].set_ylim(0.0, 1.0)
+    bad = ~motion.reached
+    for axes in panels:
+        axes.grid(alpha=0.3)
+        axes.fill_between(times, 0, 1, where=bad, transform=axes.get_xaxis_transform(), color="#d0302020", step="mid")
+    panels[0].legend(fontsize=8, ncols=6, loc="center")
+    shaded = "; shaded: beyond a limit" if bad.any() else ""
+    panels[0].set_title(f"{mechanism.name}: legs along the way (dashed: limits{shaded})", fontsize=11)
+    return figure
 
 
 @checked

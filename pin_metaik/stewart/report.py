@@ -6,6 +6,7 @@ from math import degrees, pi
 from typing import Any, TypeAlias
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from pin_metaik.stewart.conditioning import conditioning
@@ -16,7 +17,7 @@ from pin_metaik.stewart.inverse import leg_lengths
 from pin_metaik.stewart.jacobian import jacobian
 from pin_metaik.stewart.limits import PoseState
 from pin_metaik.stewart.mechanism import Mechanism
-from pin_metaik.stewart.poses import PoseLike, as_poses
+from pin_metaik.stewart.poses import PoseLike, as_poses, one_pose
 from pin_metaik.stewart.singularity import crossings, singularities
 from pin_metaik.stewart.surveying import LEAST
 from pin_metaik.stewart.trajectory import Trajectory, follow, judge_poses
@@ -115,6 +116,8 @@ def at_pose(mechanism: Mechanism, pose: PoseLike) -> Lines:
         ("pose is", PoseState[found["state"].upper()].words),
         ("dexterity nu", f"{found['nu']:.6f}"),
     ]
+    rows = (", ".join(f"{value:9.6f}" for value in row) for row in found["jacobian"])
+    lines += [("Jacobian" if i == 1 else "", f"leg {i}: {row}") for i, row in enumerate(rows, start=1)]
     if found["nearest_legs"] is not None:
         i, j = found["nearest_legs"]
         lines.append(("nearest legs", f"{i} and {j}, {in_unit(mechanism, found['leg_distance'])} apart"))
@@ -140,6 +143,13 @@ def along(mechanism: Mechanism, way: Trajectory) -> Lines:
         what = "det J changes sign" if crossing.crosses else "singular"
         lines.append((what, f"at {crossing.time:.6g} s, {in_unit(mechanism, crossing.pose[:3, 3])}"))
     return lines
+
+
+def pose_words(mechanism: Mechanism, pose: PoseLike) -> str:
+    """A pose in words: x, y, z in the mechanism's unit, and roll, pitch, yaw in degrees."""
+    T = one_pose(pose)
+    turn = ", ".join(f"{degrees(angle.round(9)) + 0.0:.6g}" for angle in pin.rpy.matrixToRpy(T[:3, :3]))
+    return f"{in_unit(mechanism, T[:3, 3].round(9) + 0.0)}; roll, pitch, yaw {turn} deg"
 
 
 def outcome(designed: Designed) -> Lines:
