@@ -32,5 +32,5 @@ def test_a_generator_is_kept_and_a_seed_gives_the_same_numbers() -> None:
     ids=["solve", "seeder", "all", "batch", "minimize"],
 )
 def test_anything_else_is_told_apart(call: Callable[[object], object], rng: object) -> None:
-    with pytest.raises(InvalidSetting, match=f"a numpy Generator or None, got {rng!r}"):
+    with pytest.raises(InvalidSetting, match=rf"Generator.* or None, got {rng!r}"):
         call(rng)

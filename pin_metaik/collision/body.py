@@ -123,7 +123,8 @@ def robot_bodies(robot: Geometry, simplify: Simplify) -> tuple[Body, ...]:
     with notice(f"simplifying {meshes} meshes of {robot.name}, once; {where_kept()}", len(pieces)) as line:
         for piece in pieces:
             link = robot.model.frames[piece.parentFrame].name
-            _check(piece.geometry, f"the piece {piece.name!r} of the link {link!r} of {robot.name}")
+            of = f" ({piece.meshPath})" if piece.meshPath else ""
+            _check(piece.geometry, f"the piece {piece.name!r}{of} of the link {link!r} of {robot.name}")
             solid = solid_of(piece.geometry, simplify)
             bodies.append(Body(link, int(piece.parentJoint), pin.SE3(piece.placement), solid, part=True))
             line.step()

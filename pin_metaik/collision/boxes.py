@@ -109,7 +109,8 @@ def near(
         margin: ... and their margin, m.
         beyond: m.
         placed: (m, 16) scratch.
-        found: (k, 3) receives the pairs, what stands numbered from m on, and their row in ``pairs`` or -1.
+        found: (k, 3) receives the pairs, what stands numbered from m on, and their row in ``pairs`` or -1; the pair
+            first whose boxes overlap most, as it is the likeliest to collide.
         least: (k,) receives a distance that the two are at least apart, m.
 
     Returns:
@@ -119,13 +120,6 @@ def near(
     m = boxes.shape[0]
     for i in range(m):
         put(poses[i], boxes[i], placed[i])
-    for k in range(pairs.shape[0]):
-        i, j = pairs[k, 0], pairs[k, 1]
-        gap = parted(placed[i], placed[j], margins[k] + beyond)
-        if gap < math.inf:
-            if count < room:
-                found[count, 0], found[count, 1], found[count, 2], least[count] = i, j, k, gap
-            count += 1
     for j in range(standing.shape[0]):
         for i in range(m):
             if asked[i, j]:
@@ -134,4 +128,19 @@ def near(
                     if count < room:
                         found[count, 0], found[count, 1], found[count, 2], least[count] = i, m + j, -1, gap
                     count += 1
+    for k in range(pairs.shape[0]):
+        i, j = pairs[k, 0], pairs[k, 1]
+        gap = parted(placed[i], placed[j], margins[k] + beyond)
+        if gap < math.inf:
+            if count < room:
+                found[count, 0], found[count, 1], found[count, 2], least[count] = i, j, k, gap
+            count += 1
+    deepest = 0
+    for k in range(1, min(count, room)):
+        if least[k] < least[deepest]:
+            deepest = k
+    if deepest > 0:
+        least[0], least[deepest] = least[deepest], least[0]
+        for k in range(3):
+            found[0, k], found[deepest, k] = found[deepest, k], found[0, k]
     return count

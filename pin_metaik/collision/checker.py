@@ -91,17 +91,16 @@ class Checker:
         """The two bodies nearest to each other at q (nq,), of all that move against each other."""
         placed = self.solids.place(q)
         best = Distance(math.inf, "", "", np.full(3, np.nan), np.full(3, np.nan))
-        done = set()
+        done: set[tuple[int, int]] = set()
         for reach in (0.0, *REACH):
             near = placed.near(self._bare, min(reach, best.distance))
-            least = placed.least(len(near)).copy()
-            for k in np.argsort(least, kind="stable").tolist():
-                i, j, own = near[k]
-                if least[k] >= best.distance:
-                    break
-                if (i, j) not in done:
-                    done.add((i, j))
-                    best = self._nearer(placed, i, j, own, best)
+            new = [(i, j, own) for i, j, own in near if (i, j) not in done]
+            done.update((i, j) for i, j, _ in new)
+            coarse = [(placed.gap(*self._first(*pair)), pair) for pair in new]
+            for gap, pair in sorted(coarse):
+                if gap > TOUCH and gap >= best.distance:
+                    break  # coarse solids enclose: nothing beyond can be nearer
+                best = self._nearer(placed, *pair, best)
             if best.distance <= reach:
                 break
         return best
@@ -160,20 +159,21 @@ class Checker:
         return a.facing(b), b.facing(a)
 
     def _collide(self, placed: Placed, i: int, j: int, own: int) -> bool:
-        first, margin = self._first(i, j, own), self._margins[own]
-        last = self._last(i, j) if self.exact else first
+        first = self._first(i, j, own)
+        margin = self._margins[own]
+        if not self.exact:
+            return placed.overlap(*first, margin)
+        last = self._last(i, j)
         if first[0].geometry is last[0].geometry and first[1].geometry is last[1].geometry:
             return placed.overlap(*last, margin)
         return placed.overlap(*first, margin + ENCLOSED) and placed.overlap(*last, margin)
 
     def _nearer(self, placed: Placed, i: int, j: int, own: int, best: Distance) -> Distance:
         """The distance of two bodies where it is less than the best, else that."""
-        first = self._first(i, j, own)
-        last = self._last(i, j) if self.exact else first
-        for levels in (first, last):
-            gap = placed.gap(*levels)
-            if gap > TOUCH and gap >= best.distance:
-                return best
+        last = self._last(i, j) if self.exact else self._first(i, j, own)
+        gap = placed.gap(*last)
+        if gap > TOUCH and gap >= best.distance:
+            return best
         solid = last[0].mesh is None and last[1].mesh is None
         if solid or gap > TOUCH:
             at = Distance(gap if gap > TOUCH else min(gap, 0.0), self._name(i), self._name(j), *placed.points)

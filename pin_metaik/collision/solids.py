@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from threading import local
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import coal
 import numpy as np
@@ -174,7 +174,7 @@ class Placed:
         self._collision, self._distance = coal.CollisionResult(), coal.DistanceResult()
         self._boxes = np.empty((len(solids.moving), 16))
         self._found, self._least = np.empty((ROOM, 3), dtype=np.int64), np.empty(ROOM)
-        self._near = near
+        self._near = cast(Any, near).compiled()  # a frame less
 
     def move(self, q: NDArray[np.float64]) -> None:
         """Put what joints carry where it is at q (nq,)."""
@@ -192,7 +192,7 @@ class Placed:
         """The pairs whose boxes are not farther apart than their margin and ``beyond``, m.
 
         Returns:
-            Numbers of both bodies, and the pair's row in ``pairs.own`` or -1; the pairs of what moves come first.
+            Numbers of both bodies, and the pair's row in ``pairs.own`` or -1; the likeliest to collide first.
         """
         solids = self.solids
         scratch = self._boxes, self._found, self._least
@@ -205,10 +205,6 @@ class Placed:
             return self.near(pairs, beyond)
         found: list[list[int]] = self._found[:count].tolist()
         return found
-
-    def least(self, count: int) -> NDArray[np.float64]:
-        """Distances (count,) that the pairs found last are at least apart, m; below 0 where boxes overlap."""
-        return self._least[:count]
 
     def overlap(self, a: Level, b: Level, margin: float) -> bool:
         """Whether two bodies are no farther apart than a margin (m), or one lies inside the other."""

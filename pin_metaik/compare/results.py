@@ -112,6 +112,7 @@ class Results:
             self._costs[case, robot] = self._table(case, robot)
         return self._costs[case, robot]
 
+    @checked
     def pairs(self, case: str) -> list[Pair]:
         """Every pair of methods that can be ranked, tested on a case."""
         if case not in self._pairs:

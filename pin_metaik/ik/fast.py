@@ -58,8 +58,9 @@ def solve_fast(
         else:
             return None
     if asked is not None:
-        most = AT_MIDDLE if isinstance(asked, Target) and asked.loose else math.inf
-        settings = np.array([*settings[:3], min(settings[3], most), near, aligned])
+        settings = np.array([*settings[:4], near, aligned])
+        if near > DEFAULT_TOLERANCE or DEFAULT_TOLERANCE < aligned < math.inf:
+            settings[3] = min(settings[3], AT_MIDDLE)
     oriented = aligned < math.inf
     lane = chain.pose_lane if oriented else chain.position_lane
     starts = lane.starts if rng is None else drawn(chain, rng, 0, LANE)

@@ -12,7 +12,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import array, instance
+from pin_metaik.arguments import array, checked, instance
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.ik.target import Target, TargetLike
@@ -133,8 +133,11 @@ class IKProblem:
         """How far (m) the targets, or the wrists behind them, are proved to be out of reach; 0 proves nothing."""
         return max(self._gap(t, oriented=math.isfinite(one.allowance[1])) for t, one in enumerate(self.targets))
 
+    @checked
     def gaps(self, t: int) -> tuple[float, float]:
         """How far (m) target number t is proved to be out of reach: the frame itself, and with its orientation."""
+        if not 0 <= t < len(self.targets):
+            raise InvalidSetting(f"t is the number of a target, 0 to {len(self.targets) - 1}, got {t}")
         oriented = math.isfinite(self.targets[t].allowance[1])
         return self._gap(t, oriented=False), self._gap(t, oriented)
 

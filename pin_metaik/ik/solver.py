@@ -124,10 +124,10 @@ class IKSolver:
         q = base.copy()
         chain.coordinates.write(ledger.x, q)
         verdict = problem.verdict(q)
-        status = IKStatus.IN_COLLISION if verdict.collides else ledger.status
+        status = IKStatus.SOLVED if verdict.accepted else IKStatus.IN_COLLISION if verdict.collides else ledger.status
         return IKResult(
             q=q,
-            status=IKStatus.SOLVED if verdict.accepted else status,
+            status=status,
             position_error=verdict.position_error,
             orientation_error=verdict.orientation_error,
             evaluations=ledger.spent,

@@ -342,7 +342,10 @@ class Chain:
             few("count", count, 0)
             count = int(count)
             if not isinstance(seed, tuple) or not all(isinstance(one, (int, np.integer)) for one in seed):
-                raise InvalidSetting(f"a seed is a whole number of at least 0, got {shown(seed)}") from None
+                given = seed[0] if isinstance(seed, tuple) and seed else seed
+                raise InvalidSetting(
+                    f"rng is a seed of at least 0, a numpy Generator or None, got {shown(given)}"
+                ) from None
             if len(self._samples) == REMEMBERED:
                 self._samples.clear()
             self._samples[count, seed] = X = self.box.sample(as_generator(seed), count)

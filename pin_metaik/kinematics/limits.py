@@ -151,6 +151,7 @@ class Limits:
         winds = self.winds & (upper - lower >= 2.0 * np.pi)
         return Limits(lower, upper, self.velocity, self.rotates, winds, self.names)
 
+    @checked_as(InvalidBounds)
     def bound(self, leader: str, line: tuple[float, float], follower: str, span: tuple[float, float]) -> Limits:
         """The same limits where a joint that follows one of these, at scale x + shift, keeps to a range of its own.
 
@@ -163,8 +164,12 @@ class Limits:
         Raises:
             InvalidBounds: If the range is crossed or NaN, or leaves the leader no room.
         """
-        scale, shift = line
+        if leader not in self.names:
+            raise InvalidBounds(f"{leader!r} is none of the joints of these limits: {', '.join(self.names)}")
+        scale, shift = _pair(follower, line)
         low, high = _pair(follower, span)
+        if not np.isfinite([scale, shift]).all():
+            raise InvalidBounds(f"scale and shift of joint {follower!r} are finite, got {line!r}")
         if not low <= high:
             raise InvalidBounds(f"joint {follower!r} has its lower limit {low} above its upper limit {high}")
         i = self.names.index(leader)

@@ -83,12 +83,12 @@ def misshape(rotation: NDArray[np.float64]) -> float:
 
 def reach_of(paths: Paths, limits: Limits, tip: int, oriented: bool) -> Reach:
     """Bounds for one tip; ``oriented`` says that targets fix all of the orientation, not only the position."""
-    links, last, closing = _links(paths, limits, tip)
+    links, last, closing = links_of(paths, limits.lower, limits.upper, tip)
     if not links:  # nothing turns: a gantry
         return Reach(last.offset, np.zeros(3), 0.0, last.slack + _doubt(paths, tip, [last], np.zeros(1)))
     # Knot i is on axis i; link 0 only places the first axis in the world.
     spanning = links[1:] if oriented else [*links[1:], last]
-    knots, spans = _tightened(spanning, len(links))
+    knots, spans = tightened(spanning, len(links))
     slack = links[0].slack + last.slack + sum(link.slack for link in links[1:])
     slack += _doubt(paths, tip, [*links, last], knots)
     most = float(spans.sum()) + slack
@@ -105,7 +105,7 @@ def _doubt(paths: Paths, tip: int, links: list[Link], knots: NDArray[np.float64]
     return size * (DIGITS * len(rows) + stretch)
 
 
-def _tightened(links: list[Link], count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def tightened(links: list[Link], count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Knots (count,) that make the links' total length least, and those lengths; any knots would give a true bound.
 
     A sum of Euclidean norms, minimised by iteratively reweighted least squares (Weiszfeld 1937).
@@ -125,8 +125,13 @@ def _tightened(links: list[Link], count: int) -> tuple[NDArray[np.float64], NDAr
     return knots, lengths
 
 
-def _links(paths: Paths, limits: Limits, tip: int) -> tuple[list[Link], Link, NDArray[np.float64]]:
-    """The link before each rotating joint, the one from the last to the tip, and that one's placement (4, 4)."""
+def links_of(
+    paths: Paths, lower: NDArray[np.float64], upper: NDArray[np.float64], tip: int
+) -> tuple[list[Link], Link, NDArray[np.float64]]:
+    """The link before each rotating joint, the one from the last to the tip, and that one's placement (4, 4).
+
+    ``lower`` and ``upper`` (n,) are the limits of the coordinates.
+    """
     links = []
     placement = np.eye(4)
     travel = np.zeros(3)
@@ -138,7 +143,7 @@ def _links(paths: Paths, limits: Limits, tip: int) -> tuple[list[Link], Link, ND
             links.append(Link(placement[:3, 3] + travel, placement[:3, 2], slack))
             placement, travel, slack = np.eye(4), np.zeros(3), 0.0
         else:
-            ends = row[12] * np.array([limits.lower[column], limits.upper[column]]) + row[13]
+            ends = row[12] * np.array([lower[column], upper[column]]) + row[13]
             travel = travel + ends.mean() * placement[:3, 2]
             slack += 0.5 * float(abs(ends[1] - ends[0]))
     placement = placement @ matrix_of(paths.tips[tip])

@@ -17,7 +17,7 @@ def whole(name: str, value: int, minimum: int) -> None:
     Raises:
         InvalidSetting: It is not.
     """
-    if isinstance(value, bool) or not hasattr(value, "__index__") or np.ndim(value) or value < minimum:
+    if isinstance(value, bool) or not hasattr(value, "__index__") or isinstance(value, np.ndarray) or value < minimum:
         raise InvalidSetting(f"{name} must be a whole number of at least {minimum}, not {shown(value)}")
 
 

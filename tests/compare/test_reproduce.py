@@ -96,7 +96,6 @@ def test_ctrl_c_prints_and_writes_what_is_done_and_marks_it_partial(tmp_path, mo
 
 
 def test_an_unknown_paper_is_named_with_those_there_are(monkeypatch, capsys):
-    assert command("rv8fl").exit_code == 2
     monkeypatch.setattr(sys, "argv", ["pin-metaik", "reproduce", "rv8fl"])
     with pytest.raises(SystemExit) as ended:
         cli.run()
@@ -107,6 +106,5 @@ def test_an_unknown_paper_is_named_with_those_there_are(monkeypatch, capsys):
 def test_without_matplotlib_figures_are_refused_before_anything_is_run(tmp_path, monkeypatch):
     monkeypatch.setattr(writing, "find_spec", lambda name: None)
     refused = command("rv7fl", "--out", tmp_path)
-    assert refused.exit_code == 2
-    assert "drawing figures needs an optional dependency" in refused.output
+    assert "drawing figures needs an optional dependency" in str(refused.exception)
     assert command("puma_offset", "--runs", 1, "--out", tmp_path, "--no-figures").exit_code == 0

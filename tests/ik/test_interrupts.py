@@ -17,7 +17,7 @@ from pin_metaik.ik.sharing import share_out
 from tests.robots_under_test import chain_of
 
 DOWN = np.diag([1.0, -1.0, -1.0])
-LATE = 1.0  # s; batches stop in hundredths of it
+LATE = 3.0  # s; batches stop in hundredths of a second, on a machine that does nothing else
 
 
 @contextmanager
@@ -65,12 +65,12 @@ def batch(world: mik.CollisionWorld | None) -> Callable[[], object]:
 @pytest.mark.parametrize("scene", [None, "shelf"])
 def test_a_batch_stops_and_so_do_its_threads(scene: str | None) -> None:
     world = None if scene is None else mik.CollisionWorld(mik.load_robot("panda"), load_scene(scene))
-    work = batch(world)
+    work, before = batch(world), threading.active_count()
     for after in (0.02, 0.2, 0.5):
         with pressed(after) as at, pytest.raises(KeyboardInterrupt):
             work()
         assert time.perf_counter() - at[0] < LATE
-        assert threading.active_count() == 1
+        assert threading.active_count() <= before + 1  # the timer that pressed may be ending
 
 
 def test_everything_at_once_stops_too() -> None:
@@ -89,6 +89,7 @@ def test_everything_at_once_stops_too() -> None:
 
 def test_an_error_in_one_thread_ends_the_work_of_all() -> None:
     started: list[int] = []
+    before = threading.active_count()
 
     def work(part: int) -> None:
         started.append(part)
@@ -99,7 +100,7 @@ def test_an_error_in_one_thread_ends_the_work_of_all() -> None:
     with pytest.raises(ZeroDivisionError):
         share_out(work, range(10_000), 3)
     assert len(started) < 100
-    assert threading.active_count() == 1
+    assert threading.active_count() <= before
 
 
 def test_a_refiner_that_spends_nothing_does_not_go_on_for_ever() -> None:

@@ -101,7 +101,7 @@ def test_a_map_is_a_scene_once_start_and_goal_are_given(tmp_path):
     ("name", "content", "said"),
     [
         ("map.yaml", b"image: map.pgm\nresolution: 1\n", "has no origin, negate"),
-        ("map.yaml", YAML.format(yaw=0, negate=0).encode() + b"mode: raw\n", "mode 'raw'"),
+        ("map.yaml", YAML.format(yaw=0, negate=0).encode() + b"mode: rough\n", "rough"),
         ("map.yaml", YAML.format(yaw=0, negate=0).replace("0.5", "half").encode(), "not an occupancy grid"),
         ("map.yaml", YAML.format(yaw=0, negate=0).replace("map.pgm", "gone.pgm").encode(), "cannot read .*gone.pgm"),
         ("map.yaml", YAML.format(yaw=0, negate=0).replace("-1.0, ", "").encode(), "not an occupancy grid"),

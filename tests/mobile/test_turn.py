@@ -169,8 +169,8 @@ def test_a_vehicle_from_a_file_is_the_nomad_but_for_what_the_file_says(tmp_path)
     assert load_vehicle(file) == dataclasses.replace(NOMAD_200, name="mine", v_max=0.508, alpha_max=0.5)
     for text, said in (
         ("{", "not JSON"),
-        ("[1]", "is no object"),
-        ('{"v": 1}', "it has v; known: name, v_max"),
+        ("[1]", "is not a vehicle: expected an object with v_max"),
+        ('{"v": 1}', "unknown key 'v'; known: name, v_max"),
         ('{"v_max": "fast"}', "v_max must be a number, not 'fast'"),
         ('{"v_max": -1}', "v_max must be a finite number above 0"),
     ):

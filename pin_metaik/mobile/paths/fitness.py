@@ -178,8 +178,10 @@ class Hulls:
     @cached_property
     def hulls(self) -> list[shapely.Polygon]:
         """The convex obstacle areas."""
-        space, obstacles = self.space, self.space.scene.obstacles
-        grown = (shapely.union_all(grow((each,), max(space.clearance, space.hair), space.join)) for each in obstacles)
+        space = self.space
+        grown = (
+            shapely.union_all(grow((each,), space.clearance_of(each), space.join)) for each in space.scene.obstacles
+        )
         return [region.convex_hull for region in grown]
 
     @cached_property

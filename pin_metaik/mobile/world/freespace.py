@@ -86,6 +86,11 @@ class FreeSpace:
         """What lines and points are grown by at least."""
         return HAIR * self.touch
 
+    @checked
+    def clearance_of(self, obstacle: shapely.Geometry) -> float:
+        """By how much an obstacle is grown, m: lines and points by a hair at least."""
+        return self.clearance if obstacle.geom_type == "Polygon" else max(self.clearance, self.hair)
+
     @property
     def box(self) -> tuple[float, float, float, float]:
         """The workspace inside its walls (x_min, y_min, x_max, y_max), smaller by the clearance."""

@@ -1,0 +1,204 @@
+"""A path of a chain as boxes take it: joint by joint, from the base or from the tip, with a wrist where there is one.
+
+What a target leaves free becomes joints of its own at the tip: a position alone a wrist that turns without limits.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.kinematics.limits import Limits
+from pin_metaik.kinematics.paths import Paths, matrix_of
+from pin_metaik.kinematics.proofs.targets import exact_pose
+from pin_metaik.kinematics.reach import ROUNDING, links_of, tightened
+
+Floats = NDArray[np.float64]
+
+MEET = 1e-9  # m: a wrist is exact, or it is none
+APART = 1e-6  # least singular value at which three axes count as pointing different ways
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """The joints from the world to one tip, whichever end is the world.
+
+    Attributes:
+        joints: (S, 14) placement, scale and shift of each; see ``kernels``.
+        wiring: (S, 2) coordinate, and whether it turns.
+        tip: (12,) placement of the tip in the last joint frame.
+    """
+
+    joints: Floats
+    wiring: NDArray[np.int64]
+    tip: Floats
+
+    def reversed(self) -> Path:
+        """The same joints seen from the tip, with the world as the tip."""
+        links = [np.linalg.inv(matrix_of(row)) for row in [*self.joints[:, :12], self.tip]][::-1]
+        rows = [np.append(_flat(link), -row[12:]) for link, row in zip(links[:-1], self.joints[::-1], strict=True)]
+        return Path(np.array(rows), np.ascontiguousarray(self.wiring[::-1]), _flat(links[-1]))
+
+    def with_wrist(self, first: int) -> Path:
+        """The path with three more joints at the tip, about its axes z, y and z, with coordinates from ``first`` on."""
+        at_tip = np.append(self.tip, [1.0, 0.0])
+        about_y = np.array([1.0, 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 0, 1, 0])  # a frame whose z is the last one's y
+        back = np.array([1.0, 0, 0, 0, 0, -1, 0, 1, 0, 0, 0, 0, 1, 0])
+        joints = np.vstack([self.joints, at_tip, about_y, back])
+        wiring = np.vstack([self.wiring, [[first + i, 1] for i in range(3)]])
+        return Path(joints, wiring, _flat(np.eye(4)))
+
+    def frames(self, x: Floats) -> Floats:
+        """World placements (S + 1, 4, 4) of the joints, before they move, and of the tip at coordinates x (n,)."""
+        frames, placement = [], np.eye(4)
+        for row, (column, turns) in zip(self.joints, self.wiring, strict=True):
+            placement = placement @ matrix_of(row[:12])
+            frames.append(placement)
+            value, motion = row[12] * x[column] + row[13], np.eye(4)
+            if turns:
+                c, s = np.cos(value), np.sin(value)
+                motion[:2, :2] = [[c, -s], [s, c]]
+            else:
+                motion[2, 3] = value
+            placement = placement @ motion
+        return np.array([*frames, placement @ matrix_of(self.tip)])
+
+
+@dataclass(frozen=True, eq=False)
+class ProofArm:
+    """What ``cover`` takes of a path, and how a target is put to it.
+
+    Attributes:
+        arrays: The arrays of ``BoxArm``.
+        backwards: Whether the path leads from the tip to the world.
+        n: Number of the chain's coordinates; those after them are free joints at the tip.
+    """
+
+    arrays: tuple[NDArray[np.float64] | NDArray[np.int64], ...]
+    backwards: bool
+    n: int
+
+    @property
+    def whole(self) -> Floats:
+        """(1, 2 m) the box of all configurations inside the limits, as ``cover`` begins with it."""
+        lower, upper = self.arrays[4], self.arrays[5]
+        return np.concatenate([0.5 * (lower + upper), 0.5 * (upper - lower)])[None]
+
+    @property
+    def reach(self) -> float:
+        """Greatest distance of two points of the path, m."""
+        return float(self.arrays[6][0])
+
+    def target(self, pose: Floats, near: float, aligned: float) -> tuple[Floats, float, float]:
+        """A pose (4, 4) and tolerances (m, rad) as ``cover`` takes them, with the rounding of its bounds."""
+        exact, skew = exact_pose(pose)
+        rotation, place = exact[:3, :3], exact[:3, 3]
+        near, aligned = (1.0 + skew) * near, aligned + 2.0 * skew
+        if self.backwards:
+            near += aligned * float(np.linalg.norm(place))
+            rotation, place = rotation.T, -rotation.T @ place
+        rounding = ROUNDING * (1.0 + self.reach)
+        return np.append(rotation.ravel(), place), near + aligned * self.reach + rounding, aligned + ROUNDING
+
+
+def proof_arm(paths: Paths, limits: Limits, tip: int, oriented: bool) -> ProofArm | None:
+    """The arm of tip number ``tip``, for whole poses or for positions; None, where its range has no bounds.
+
+    That is so for slides without limits, and for angles without limits that other joints follow at a scale.
+    """
+    first, last = paths.ends[tip], paths.ends[tip + 1]
+    path = Path(paths.joints[first:last], paths.wiring[first:last], paths.tips[tip])
+    box = _bounded(path, limits)
+    if box is None:
+        return None
+    lower, upper = box
+    n = len(lower)
+    if not oriented:
+        path = path.with_wrist(n)
+        lower, upper = np.append(lower, [-np.pi] * 3), np.append(upper, [np.pi] * 3)
+    wrist, backwards = _wrist(path, lower, upper), False
+    if wrist is None:
+        turned = path.reversed()
+        wrist = _wrist(turned, lower, upper)
+        if wrist is not None:
+            path, backwards = turned, True
+    knots = _knots(path, lower, upper)
+    if wrist is not None:
+        knots[-3:] = wrist
+    arrays = (
+        np.ascontiguousarray(path.joints),
+        np.ascontiguousarray(path.wiring),
+        knots,
+        path.tip,
+        lower,
+        upper,
+        np.array([_reach(path, knots, lower, upper)]),
+        np.array([int(wrist is not None)]),
+    )
+    return ProofArm(arrays, backwards, n)
+
+
+def _bounded(path: Path, limits: Limits) -> tuple[Floats, Floats] | None:
+    """Limits (n,) of the coordinates, at most a turn of those that a turn does not change; None if there are none."""
+    one = limits.one_turn()
+    lower, upper = one.lower.copy(), one.upper.copy()
+    for column in range(len(lower)):
+        on_path = path.wiring[:, 0] == column
+        if not on_path.any():
+            lower[column] = upper[column] = 0.0
+        elif not np.isfinite([lower[column], upper[column]]).all():
+            scales = path.joints[on_path, 12]
+            if not path.wiring[on_path, 1].all() or (np.round(scales) != scales).any():
+                return None
+            lower[column] = -np.pi if np.isinf(upper[column]) else upper[column] - 2.0 * np.pi
+            lower[column] = one.lower[column] if np.isfinite(one.lower[column]) else lower[column]
+            upper[column] = lower[column] + 2.0 * np.pi if np.isinf(upper[column]) else upper[column]
+    return lower, upper
+
+
+def _knots(path: Path, lower: Floats, upper: Floats) -> Floats:
+    """Where on each axis its point is (S,), so that the links between them are short in sum; 0 for slides."""
+    S = len(path.joints)
+    paths = Paths(path.joints, path.wiring, np.array([0, S]), path.tip[None])
+    links, _, _ = links_of(paths, lower, upper, 0)
+    knots = np.zeros(S)
+    if links:
+        knots[path.wiring[:, 1] == 1] = tightened(links[1:], len(links))[0]
+    return knots
+
+
+def _wrist(path: Path, lower: Floats, upper: Floats) -> Floats | None:
+    """Where on the last three axes (3,) they meet, if they do and nothing else follows their coordinates."""
+    S, columns = len(path.joints), path.wiring[:, 0]
+    own = S > 3 and path.wiring[-3:, 1].all() and all((columns == c).sum() == 1 for c in columns[-3:])
+    if not own:
+        return None
+    frames = path.frames(lower + 0.37 * (upper - lower))[-4:-1]
+    axes, points = frames[:, :3, 2], frames[:, :3, 3]
+    across = np.eye(3) - axes[:, :, None] * axes[:, None]
+    where, _, _, singular = np.linalg.lstsq(across.sum(axis=0), np.einsum("kij,kj->i", across, points), rcond=None)
+    off = np.linalg.norm(np.einsum("kij,kj->ki", across, where - points), axis=1)
+    # Each must turn the next: two that are parallel would be one.
+    turning = [np.linalg.norm(np.cross(axes[i], axes[i + 1])) > APART for i in range(2)]
+    if singular[-1] < APART or off.max() > MEET or not all(turning):
+        return None
+    met: Floats = np.einsum("ki,ki->k", where - points, axes)
+    return met
+
+
+def _reach(path: Path, knots: Floats, lower: Floats, upper: Floats) -> float:
+    """Greatest distance (m) that points on the axes, and the tip, can have from each other."""
+    frames = path.frames(0.5 * (lower + upper))
+    points = frames[:, :3, 3].copy()
+    points[:-1] += knots[:, None] * frames[:-1, :3, 2]
+    slides = path.wiring[:, 1] == 0
+    travel = np.abs(path.joints[slides, 12]) * (upper - lower)[path.wiring[slides, 0]]
+    return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum() + travel.sum())
+
+
+def _flat(matrix: NDArray[Any]) -> Floats:
+    """A placement (4, 4) as (12,): rotation row by row, then translation."""
+    return np.append(matrix[:3, :3].ravel(), matrix[:3, 3])

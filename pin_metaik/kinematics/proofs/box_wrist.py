@@ -1,0 +1,78 @@
+"""Whether a wrist, the last three axes, which meet, can turn the tip as the target asks, for any place of the others.
+
+The three steps of a closed form, with what the joints before the wrist do as a radius on the target's directions. So
+the wrist's joints need never be split.
+"""
+
+from __future__ import annotations
+
+import math
+
+from pin_metaik.compiled import Floats, inline, shared
+from pin_metaik.kinematics.branches import angle, cross, dot, vector
+from pin_metaik.kinematics.proofs.balls import (
+    Arc,
+    arc_from_to,
+    beyond,
+    lever,
+    norm,
+    reverse,
+    turned_ball,
+)
+from pin_metaik.kinematics.proofs.box import BoxArm, Laid, times
+from pin_metaik.kinematics.reach import ROUNDING
+
+
+@shared
+def excluded_by_wrist(arm: BoxArm, laid: Laid, centre: Floats, aligned: float, start: Floats) -> bool:
+    """Whether no turns of the wrist inside the limits come within ``aligned`` (rad) of the target's orientation.
+
+    If some may, ``start`` (n,) gets the wrist's coordinates there.
+    """
+    S = laid.half.shape[0]
+    w = S - 3
+    k1, k2, k3 = vector(laid.axes[w]), vector(laid.axes[w + 1]), vector(laid.axes[w + 2])
+    side = cross(k3, (1.0, 0.0, 0.0) if abs(k3[0]) < 0.6 else (0.0, 1.0, 0.0))
+    size = norm(side)
+    side = side[0] / size, side[1] / size, side[2] / size  # across axis 3 of the wrist
+    goal, goal_side = vector(laid.target_axes[w + 2]), times(laid.turn, side)
+    off = off_side = aligned
+    for j in range(w):
+        if arm.wiring[j, 1] == 1:
+            off += laid.moves[j] * lever(vector(laid.axes[j]), goal)
+            off_side += laid.moves[j] * lever(vector(laid.axes[j]), goal_side)
+    # k1 . Rot(k2, turn) k3 = k1 . goal
+    fixed = dot(k1, k2) * dot(k2, k3)
+    a, b, rest = dot(k1, k3) - fixed, dot(k1, cross(k2, k3)), dot(k1, goal) - fixed
+    size, spread = math.sqrt(a * a + b * b), min(off, lever(k1, goal) * off + 0.5 * off * off)
+    if size < ROUNDING:
+        return False
+    if abs(rest) - spread > size:
+        return True
+    near, far = math.acos(min((rest + spread) / size, 1.0)), math.acos(max((rest - spread) / size, -1.0))
+    middle, half, radius = math.atan2(b, a), 0.5 * (near + far), 0.5 * (far - near)
+    for way in range(2):
+        second = middle + (half if way == 0 else -half)
+        t2: Arc = (math.cos(second), math.sin(second)), radius
+        t1 = arc_from_to(k1, turned_ball(k2, t2, (k3, 0.0)), (goal, off))
+        back = turned_ball(k2, reverse(t2), turned_ball(k1, reverse(t1), (goal_side, off_side)))
+        t3 = arc_from_to(k3, (side, 0.0), back)
+        fits = turns(arm, centre, w, t1, start) and turns(arm, centre, w + 1, t2, start)
+        if fits and turns(arm, centre, w + 2, t3, start):
+            return False
+    return True
+
+
+@inline
+def turns(arm: BoxArm, centre: Floats, s: int, arc: Arc, start: Floats) -> bool:
+    """Whether joint s may turn by an arc from where it is at the centre; its coordinate there goes into ``start``."""
+    c, scale, shift = arm.wiring[s, 0], arm.joints[s, 12], arm.joints[s, 13]
+    first, last = scale * arm.lower[c] + shift, scale * arm.upper[c] + shift
+    lower, upper = min(first, last), max(first, last)
+    at = scale * centre[c] + shift + angle(arc[0])
+    if beyond(at, arc[1], lower, upper) > 0.0:
+        return False
+    turn = 2.0 * math.pi
+    at += turn * math.ceil((lower - ROUNDING - arc[1] - at) / turn) if arc[1] < math.pi else 0.0
+    start[c] = (min(max(at, lower), upper) - shift) / scale
+    return True

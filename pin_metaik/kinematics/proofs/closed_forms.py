@@ -1,0 +1,114 @@
+"""Proofs by an arm's closed form: which of its branches may hold a configuration, and what is wrong with the others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.kinematics.limits import Limits
+from pin_metaik.kinematics.paths import Paths
+from pin_metaik.kinematics.proofs.deviation import deviation, ideal
+from pin_metaik.kinematics.proofs.targets import exact_pose
+from pin_metaik.kinematics.reach import ROUNDING
+
+Floats = NDArray[np.float64]
+BRANCHES = 8
+POSSIBLE, SHOULDER, WRIST, ELBOW, LIMIT = range(5)  # as the compiled loop numbers what is wrong with a branch
+
+
+@dataclass(frozen=True, eq=False)
+class Branches:
+    """What a closed form says of the configurations that reach a pose within its tolerances.
+
+    Attributes:
+        angles: (8, 6) angle of each joint on each branch that is real, rad.
+        radii: (8, 6) how far the true angles may be from them, rad.
+        faults: (8, 3) what is wrong with a branch, the coordinate beyond its limit or -1, and by how much: m, rad, or
+            for the wrist the sine of an angle.
+    """
+
+    angles: Floats
+    radii: Floats
+    faults: Floats
+
+    @property
+    def possible(self) -> NDArray[np.int64]:
+        """Numbers of the branches that may hold a configuration."""
+        return np.flatnonzero(self.faults[:, 0] == POSSIBLE)
+
+    @property
+    def proved(self) -> bool:
+        """Whether it is proved that no configuration inside the limits reaches the pose."""
+        return not len(self.possible)
+
+    def why(self, limits: Limits, columns: NDArray[np.int64]) -> str:
+        """What keeps the arm from the pose, on the branch that comes nearest to it.
+
+        Args:
+            limits: Of the coordinates.
+            columns: (6,) the coordinate of each joint.
+        """
+        real = self.faults[:, 0] == LIMIT
+        if real.any():
+            number = int(np.flatnonzero(real)[np.argmin(self.faults[real, 2])])
+            _, column, over = self.faults[number]
+            c = int(column)
+            (joint,) = np.flatnonzero(columns == c)
+            angle, side = _outside(float(self.angles[number, joint]), float(limits.lower[c]), float(limits.upper[c]))
+            return (
+                f"{real.sum()} of its {BRANCHES} closed-form branches are real; the nearest needs {limits.names[c]} at "
+                f"{angle:.4g} rad, {over:.2g} rad beyond its limit {side:.4g}"
+            )
+        step = np.argmin(np.where(self.faults[:, 0] == WRIST, np.inf, self.faults[:, 2]))
+        if self.faults[step, 0] == SHOULDER:
+            return f"the wrist would be {self.faults[step, 2]:.2g} m too near to the axis of {limits.names[columns[0]]}"
+        if self.faults[step, 0] == ELBOW:
+            names = limits.names[columns[1]], limits.names[columns[2]]
+            return f"the links after {names[0]} and {names[1]} miss the wrist by {self.faults[step, 2]:.2g} m"
+        return f"no angle of {limits.names[columns[4]]} turns the last axis as this orientation asks"
+
+
+@dataclass(frozen=True, eq=False)
+class ClosedFormProof:
+    """Decides whether an arm with a closed form reaches a pose.
+
+    Attributes:
+        form: (16, 3) the closed form, its parallel axes parallel to the last digit.
+        wiring: (6, 2) of the arm's joints.
+        limits: Of its coordinates.
+        near: How far (m) the arm's tip may be from the closed form's.
+        aligned: By how much (rad) it may be turned.
+    """
+
+    form: Floats
+    wiring: NDArray[np.int64]
+    limits: Limits
+    near: float
+    aligned: float
+
+    @staticmethod
+    def of(form: Floats, paths: Paths, limits: Limits) -> ClosedFormProof:
+        """The proof for an arm's closed form, with how far the arm is from it."""
+        exact = ideal(form)
+        near, aligned = deviation(paths, exact)
+        size = float(np.linalg.norm(exact[6:12], axis=1).sum())
+        return ClosedFormProof(exact, paths.wiring, limits, near + ROUNDING * (1.0 + size), aligned + ROUNDING)
+
+    def judge(self, pose: Floats, near: float, aligned: float) -> Branches:
+        """Which branches may hold a configuration whose tip is within ``near`` (m) and ``aligned`` (rad) of a pose."""
+        from pin_metaik.kinematics.proofs.branch_balls import judge_pose
+
+        exact, skew = exact_pose(pose)
+        angles, radii, faults = np.zeros((BRANCHES, 6)), np.zeros((BRANCHES, 6)), np.empty((BRANCHES, 3))
+        near, aligned = (1.0 + skew) * near + self.near, aligned + 2.0 * skew + self.aligned
+        judge_pose(self.form, self.wiring, *self.limits.arrays, exact, near, aligned, angles, radii, faults)
+        return Branches(angles, radii, faults)
+
+
+def _outside(angle: float, lower: float, upper: float) -> tuple[float, float]:
+    """The copy of an angle by whole turns that is nearest to a range, and the limit it is beyond."""
+    turn = 2.0 * np.pi
+    above = angle + turn * np.ceil((lower - angle) / turn)
+    return (above, upper) if above - upper <= lower - (above - turn) else (above - turn, lower)

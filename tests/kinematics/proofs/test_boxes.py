@@ -1,0 +1,110 @@
+"""Boxes decide chains without a closed form, and cover all solutions of any."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+import pin_metaik as mik
+from pin_metaik.kinematics.proofs.arm import Path, ProofArm, proof_arm
+from pin_metaik.kinematics.proofs.box_search import cover
+
+
+def chain_of(robot: str) -> mik.Chain:
+    loaded = mik.load_robot(robot)
+    return mik.Chain(loaded.model, loaded.frame)
+
+
+def arm_of(chain: mik.Chain, oriented: bool = True) -> ProofArm:
+    arm = proof_arm(chain.paths, chain.limits, 0, oriented)
+    assert arm is not None
+    return arm
+
+
+def path_of(chain: mik.Chain) -> Path:
+    return Path(chain.paths.joints, chain.paths.wiring, chain.paths.tips[0])
+
+
+@pytest.mark.parametrize("robot", ["talos_arm", "panda"])
+def test_what_is_not_solved_is_proved_and_nothing_is_both(robot: str) -> None:
+    chain = chain_of(robot)
+    arm, rng = arm_of(chain), np.random.default_rng(7)
+    poses = chain.poses(chain.box.sample(rng, 60))[:, 0]
+    for pose in poses:
+        pose[:3, :3] = pin.Quaternion(*rng.normal(size=4)).normalized().matrix()
+    solved = mik.solve_ik_batch(chain, poses, solver=mik.IKSolver(budget=mik.Budget(evaluations=600))).success
+    leaves = np.empty((1, arm.whole.shape[1]))
+    for pose, found in zip(poses, solved, strict=True):
+        _, kept, done = cover(*arm.arrays, *arm.target(pose, 1e-5, 1e-5), arm.whole, 1e-3, 20_000, leaves)
+        assert bool(done and not kept) != found
+
+
+def test_a_position_that_limits_forbid_is_proved_out_of_reach() -> None:
+    """A planar arm of three joints that cannot fold: the links span the distance, the limits do not let them."""
+    model = pin.Model()
+    joint = 0
+    for i in range(3):
+        way = pin.SE3(np.eye(3), np.array([0.0 if i == 0 else 0.4, 0.0, 0.0]))
+        ten, most = np.array([10.0]), np.array([0.3 if i else 3.0])
+        joint = model.addJoint(joint, pin.JointModelRZ(), way, f"joint_{i}", ten, ten, -most, most)
+    model.addFrame(pin.Frame("tip", joint, 0, pin.SE3(np.eye(3), np.array([0.4, 0.0, 0.0])), pin.FrameType.OP_FRAME))
+    chain = mik.Chain(model, "tip")
+    arm = arm_of(chain, oriented=False)
+    leaves = np.empty((4, arm.whole.shape[1]))
+
+    def proved(distance: float) -> bool:
+        pose = np.eye(4)
+        pose[0, 3] = distance
+        _, kept, done = cover(*arm.arrays, *arm.target(pose, 1e-5, 0.0), arm.whole, 1e-3, 5_000, leaves)
+        return bool(done and not kept)
+
+    nearest = np.linalg.norm(chain.poses(np.array([0.0, 0.3, 0.3]))[0, 0, :3, 3])
+    assert proved(0.9 * nearest) and proved(1.01 * 1.2)
+    assert not proved(nearest) and not proved(1.18) and not proved(1.2)
+
+
+@pytest.mark.parametrize("robot", ["talos_arm", "aerial_arm"])
+def test_every_solution_lies_in_a_leaf_of_the_cover(robot: str) -> None:
+    chain = chain_of(robot)
+    arm, rng = arm_of(chain), np.random.default_rng(1)
+    n, leaves = chain.n, np.empty((4_000, arm.whole.shape[1]))
+    split = n - 3 if arm.arrays[7][0] else n  # the wrist's joints are not split
+    for x in chain.box.sample(rng, 3):
+        pose = chain.poses(x)[0, 0]
+        _, kept, done = cover(*arm.arrays, *arm.target(pose, 1e-6, 1e-6), arm.whole, 0.03, 200_000, leaves)
+        assert done and 0 < kept < len(leaves)
+        for solution in chain.x(mik.solve_ik_all(chain, pose).q):
+            off = np.abs(leaves[:kept, :split] - solution[:split])
+            assert (off <= leaves[:kept, n : n + split] + 1e-6).all(axis=1).any()
+
+
+def test_a_path_and_its_reverse_are_inverse_to_each_other() -> None:
+    chain = chain_of("panda")
+    path, x = path_of(chain), chain.box.sample(np.random.default_rng(0), 1)[0]
+    np.testing.assert_allclose(path.frames(x)[-1], chain.poses(x)[0, 0], atol=1e-12)
+    np.testing.assert_allclose(path.reversed().frames(x)[-1] @ path.frames(x)[-1], np.eye(4), atol=1e-12)
+
+
+def test_free_joints_at_the_tip_turn_it_where_it_stands() -> None:
+    chain = chain_of("ur5")
+    path, rng = path_of(chain), np.random.default_rng(0)
+    x, turns = chain.box.sample(rng, 1)[0], rng.uniform(-np.pi, np.pi, 3)
+    tip, turned = path.frames(x)[-1], path.with_wrist(6).frames(np.append(x, turns))[-1]
+    np.testing.assert_allclose(turned[:3, 3], tip[:3, 3], atol=1e-12)
+    meant = tip[:3, :3]
+    for axis, angle in zip("zyz", turns, strict=True):
+        meant = meant @ pin.utils.rotate(axis, angle)
+    np.testing.assert_allclose(turned[:3, :3], meant, atol=1e-12)
+
+
+def test_a_wrist_at_the_base_is_found_from_the_tip() -> None:
+    arm = arm_of(chain_of("panda"))
+    assert arm.backwards and arm.arrays[7][0] == 1
+    assert not arm_of(chain_of("talos_arm")).backwards
+
+
+def test_slides_without_limits_cannot_be_covered() -> None:
+    model = pin.Model()
+    joint = model.addJoint(0, pin.JointModelPX(), pin.SE3.Identity(), "slide")
+    model.addFrame(pin.Frame("tip", joint, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME))
+    chain = mik.Chain(model, "tip")
+    assert proof_arm(chain.paths, chain.limits, 0, oriented=True) is None
