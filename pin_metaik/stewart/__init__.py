@@ -26,7 +26,8 @@ from pin_metaik.stewart.layouts import NAMED, standard_geometry
 from pin_metaik.stewart.library import load_mechanism, mechanism_names
 from pin_metaik.stewart.limits import LegLimits, PoseState
 from pin_metaik.stewart.mechanism import Mechanism
-from pin_metaik.stewart.picture import draw, draw_history, draw_into, save_picture
+from pin_metaik.stewart.picture import draw, draw_above, draw_history, draw_into, draw_motion, save_picture
+from pin_metaik.stewart.points import save_points
 from pin_metaik.stewart.poses import pose_at
 from pin_metaik.stewart.progress import progress_bar
 from pin_metaik.stewart.ranges import Ranges
@@ -35,7 +36,9 @@ from pin_metaik.stewart.singularity import Crossing, Singularities, crossings, s
 from pin_metaik.stewart.surveying import survey
 from pin_metaik.stewart.task import DesignTask
 from pin_metaik.stewart.trajectory import Motion, Trajectory, follow, judge_poses, straight
+from pin_metaik.stewart.type_designs import TypeDesign, compare_types, new_mechanism
 from pin_metaik.stewart.urdf import save_urdf, to_urdf
+from pin_metaik.stewart.ways import read_trajectory, save_motion
 from pin_metaik.stewart.workspace import EmptyWorkspace, Verdict, Workspace
 from pin_metaik.stewart.writing import save_mechanism, to_toml
 
@@ -61,18 +64,22 @@ __all__ = [
     "Score",
     "Singularities",
     "Trajectory",
+    "TypeDesign",
     "Verdict",
     "Workspace",
     "all_forward",
     "best_length",
     "characteristic_length",
     "closed_model",
+    "compare_types",
     "conditioning",
     "crossings",
     "design",
     "draw",
+    "draw_above",
     "draw_history",
     "draw_into",
+    "draw_motion",
     "follow",
     "forward",
     "homogenised",
@@ -84,11 +91,15 @@ __all__ = [
     "legs_of",
     "load_mechanism",
     "mechanism_names",
+    "new_mechanism",
     "pose_at",
     "progress_bar",
     "read_mechanism",
+    "read_trajectory",
     "save_mechanism",
+    "save_motion",
     "save_picture",
+    "save_points",
     "save_urdf",
     "singularities",
     "standard_geometry",

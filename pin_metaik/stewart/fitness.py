@@ -9,8 +9,8 @@ import numpy as np
 from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.space import Array
-from pin_metaik.stewart.geometry import Geometry, chords
-from pin_metaik.stewart.limits import LegLimits, PoseState
+from pin_metaik.stewart.geometry import Geometry, chords, gaps
+from pin_metaik.stewart.limits import LegLimits, PoseState, excess
 from pin_metaik.stewart.mechanism import Mechanism
 from pin_metaik.stewart.ranges import Dimensions, Variables
 from pin_metaik.stewart.surveying import explored, with_best_length
@@ -93,14 +93,21 @@ class Fitness:
     @checked
     def missing(self, dimensions: Dimensions) -> float:
         """How much length is missing for the joints to keep their gap and the legs to extend, m; 0 if none."""
-        gaps = np.concatenate(
-            (
-                chords(dimensions.base_radius, dimensions.base_angles),
-                chords(dimensions.platform_radius, dimensions.platform_angles),
-            )
+        between = np.concatenate(
+            [
+                gaps(joints) if len(joints) else chords(radius, angles)
+                for joints, radius, angles in (
+                    (dimensions.base, dimensions.base_radius, dimensions.base_angles),
+                    (dimensions.platform, dimensions.platform_radius, dimensions.platform_angles),
+                )
+            ]
         )
-        short = np.maximum(self.task.joint_gap - gaps, 0.0).sum() + max(dimensions.shortest - dimensions.longest, 0.0)
-        return float(short) if gaps.min() > 0.0 else float(short) + self.cube
+        dead = self.mechanism.limits.dead_length
+        short = np.maximum(self.task.joint_gap - between, 0.0).sum() + max(
+            dimensions.shortest - dimensions.longest, 0.0
+        )
+        short += 0.0 if dead is None else excess(dimensions.shortest, dimensions.longest, dead)
+        return float(short) if between.min() > 0.0 else float(short) + self.cube
 
     @checked
     def build(self, dimensions: Dimensions) -> tuple[Geometry, LegLimits]:
@@ -115,6 +122,8 @@ class Fitness:
             platform_radius=dimensions.platform_radius,
             base_angles=tuple(dimensions.base_angles.tolist()),
             platform_angles=tuple(dimensions.platform_angles.tolist()),
+            base=tuple(map(tuple, dimensions.base.tolist())) or None,
+            platform=tuple(map(tuple, dimensions.platform.tolist())) or None,
         )
         return geometry, replace(self.mechanism.limits, shortest=dimensions.shortest, longest=dimensions.longest)
 

@@ -1,8 +1,9 @@
 """Where the joints of a general Stewart platform are, and which leg joins which two of them.
 
 Base joints B lie on a circle of radius rb about O, platform joints M on a circle of radius rm; both circles are planar,
-angles count from the x axis. Several legs may share a joint: the connection matrix says which joints have a leg between
-them, and that matrix is all that distinguishes the types 3x3 (three joints a side) to 6x6.
+angles count from the x axis. Or the joints of a side are anywhere, as those of calibrated platforms are. Several legs
+may share a joint: the connection matrix says which joints have a leg between them, and that matrix is all that
+distinguishes the types 3x3 (three joints a side) to 6x6.
 """
 
 from __future__ import annotations
@@ -12,53 +13,89 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from math import degrees, isfinite, tau
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import array, checked, number, shown
+from pin_metaik.arguments import array, checked, checked_as, number, shown
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
 
 FEWEST_LEGS, MOST_LEGS = 3, 6
 
+Point: TypeAlias = tuple[float, float, float]
+
 
 @dataclass(frozen=True)
 class Geometry:
-    """A general Stewart platform: two circles of joints and the legs between them. Lengths in m, angles in rad.
+    """A general Stewart platform: the joints of both sides and the legs between them. Lengths in m, angles in rad.
+
+    ``Geometry(rb, rm, base_angles, platform_angles, legs)`` has its joints on circles; ``Geometry.of_joints`` takes
+    points. One side may be of one kind and one of the other.
 
     Attributes:
-        base_radius: rb, of the fixed circle.
-        platform_radius: rm, of the moving circle.
-        base_angles: Of the joints B1, B2 ... on the fixed circle: ascending, within one turn.
-        platform_angles: Of the joints M1, M2 ... on the moving circle: ascending, within one turn.
+        base_radius: rb, of the fixed circle. Of joints anywhere: how far they are from their middle, the root mean
+            square.
+        platform_radius: rm, of the moving circle, likewise.
+        base_angles: Of the joints B1, B2 ... on the fixed circle: ascending, within one turn; none for joints anywhere.
+        platform_angles: Of the joints M1, M2 ... on the moving circle, likewise.
         legs: The (base joint, platform joint) of each of the 3 to 6 legs, counted from 0.
-        reference: The point P that poses place, in the frame of the moving circle; its centre if not given.
+        reference: The point P that poses place, in the frame that the platform's joints are given in; the centre of its
+            circle if not given.
+        base: The joints B1, B2 ... as points x, y, z, at any heights; None: they are on a circle.
+        platform: The joints M1, M2 ... likewise, in the platform's frame.
 
     Raises:
-        InvalidGeometry: A radius that is not above zero, angles out of order, a leg to a joint that does not exist, a
-            joint without a leg, two legs between the same joints, or not 3 to 6 legs.
+        InvalidGeometry: A radius that is not above zero, angles out of order, joints in one place, a leg to a joint
+            that does not exist, a joint without a leg, two legs between the same joints, or not 3 to 6 legs.
     """
 
-    base_radius: float
-    platform_radius: float
-    base_angles: tuple[float, ...]
-    platform_angles: tuple[float, ...]
-    legs: tuple[tuple[int, int], ...]
-    reference: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    base_radius: float = 0.0
+    platform_radius: float = 0.0
+    base_angles: tuple[float, ...] = ()
+    platform_angles: tuple[float, ...] = ()
+    legs: tuple[tuple[int, int], ...] = ()
+    reference: Point = (0.0, 0.0, 0.0)
+    base: tuple[Point, ...] | None = None
+    platform: tuple[Point, ...] | None = None
 
     def __post_init__(self) -> None:
-        for name in ("base_radius", "platform_radius"):
-            object.__setattr__(self, name, _radius(name, getattr(self, name)))
-        for name, side in (("base_angles", "B"), ("platform_angles", "M")):
-            object.__setattr__(self, name, _angles(name, side, getattr(self, name)))
-        legs = _legs(self.legs, len(self.base_angles), len(self.platform_angles))
+        for side, letter in (("base", "B"), ("platform", "M")):
+            for name, value in _side(self, side, letter).items():
+                object.__setattr__(self, name, value)
+        legs = _legs(self.legs, len(self.base_joints), len(self.platform_joints))
         object.__setattr__(self, "legs", legs)
-        reference = _numbers("reference", self.reference)
-        if len(reference) != 3:
-            raise InvalidGeometry(f"reference is three lengths x, y, z, got {self.reference!r}")
-        object.__setattr__(self, "reference", reference)
+
+    @classmethod
+    @checked_as(InvalidGeometry)
+    def of_joints(
+        cls,
+        base: ArrayLike,
+        platform: ArrayLike,
+        legs: Sequence[tuple[int, int]] | None = None,
+        reference: ArrayLike = (0.0, 0.0, 0.0),
+    ) -> Geometry:
+        """A platform with its joints anywhere.
+
+        Args:
+            base: B1, B2 ... in the base frame, m (joints, 3).
+            platform: M1, M2 ... in the platform frame, m (joints, 3).
+            legs: Which joins which; default: the first to the first, the second to the second ...
+            reference: The point P that poses place, in the platform frame, m (3,).
+
+        Raises:
+            InvalidGeometry: Joints or legs that cannot be those of a platform.
+        """
+        sides = [
+            tuple(map(tuple, array(name, joints, "joints", 3, error=InvalidGeometry).tolist()))
+            for name, joints in (("base", base), ("platform", platform))
+        ]
+        if legs is None and len(sides[0]) != len(sides[1]):
+            raise InvalidGeometry(f"say which legs join which of {len(sides[0])} and {len(sides[1])} joints")
+        joined = tuple((i, i) for i in range(len(sides[0]))) if legs is None else tuple(legs)
+        place = tuple(array("reference", reference, 3, error=InvalidGeometry).tolist())
+        return cls(legs=joined, reference=place, base=sides[0], platform=sides[1])
 
     @property
     def n(self) -> int:
@@ -68,24 +105,38 @@ class Geometry:
     @property
     def type(self) -> str:
         """Joints a side, base first, as the literature names it: ``"6x3"``."""
-        return f"{len(self.base_angles)}x{len(self.platform_angles)}"
+        return f"{len(self.base_joints)}x{len(self.platform_joints)}"
 
     @property
     def connection(self) -> NDArray[np.int64]:
         """The connection matrix (joints of the base, joints of the platform): 1 where a leg joins the two."""
-        matrix = np.zeros((len(self.base_angles), len(self.platform_angles)), dtype=np.int64)
+        matrix = np.zeros((len(self.base_joints), len(self.platform_joints)), dtype=np.int64)
         matrix[tuple(np.transpose(self.legs))] = 1
         return matrix
 
     @cached_property
     def base_joints(self) -> Array:
         """Positions of B1, B2 ... in the base frame, m (joints, 3)."""
-        return _frozen(on_circle(self.base_radius, self.base_angles))
+        on_base = on_circle(self.base_radius, self.base_angles) if self.base is None else np.array(self.base)
+        return _frozen(on_base)
 
     @cached_property
     def platform_joints(self) -> Array:
         """Positions of M1, M2 ... from P in the platform frame, m (joints, 3)."""
-        return _frozen(on_circle(self.platform_radius, self.platform_angles) - np.array(self.reference))
+        on_platform = (
+            on_circle(self.platform_radius, self.platform_angles) if self.platform is None else np.array(self.platform)
+        )
+        return _frozen(on_platform - np.array(self.reference))
+
+    @property
+    def base_centre(self) -> Array:
+        """Centre of the fixed circle, or the middle of the joints of the base, m (3,) in the base frame."""
+        return np.zeros(3) if self.base is None else self.base_joints.mean(axis=0)
+
+    @property
+    def platform_centre(self) -> Array:
+        """Centre of the moving circle, or the middle of the joints of the platform, m (3,) from P in its frame."""
+        return -np.array(self.reference) if self.platform is None else self.platform_joints.mean(axis=0)
 
     @cached_property
     def b(self) -> Array:
@@ -114,12 +165,14 @@ class Geometry:
 
     @property
     def joint_gap(self) -> float:
-        """Least distance between the centres of neighbouring joints on either circle, m."""
-        gaps = (
-            chords(self.base_radius, np.array(self.base_angles)),
-            chords(self.platform_radius, np.array(self.platform_angles)),
+        """Least distance between the centres of two joints of a side, m."""
+        base = gaps(self.base_joints) if self.base else chords(self.base_radius, np.array(self.base_angles))
+        moving = (
+            gaps(self.platform_joints)
+            if self.platform
+            else chords(self.platform_radius, np.array(self.platform_angles))
         )
-        return float(min(gap.min() for gap in gaps))
+        return float(min(base.min(), moving.min()))
 
     def __str__(self) -> str:
         legs = ", ".join(f"B{base + 1}-M{platform + 1}" for base, platform in self.legs)
@@ -139,6 +192,12 @@ def chords(radius: float, angles: Array) -> Array:
     """
     steps = np.append(angles[1:], angles[0] + tau) - angles
     return np.asarray(2.0 * radius * np.sin(np.maximum(np.minimum(0.5 * steps, np.pi), -np.pi / 2)))
+
+
+def gaps(joints: Array) -> Array:
+    """Distances (p,) between all pairs of joints (k, 3)."""
+    i, j = np.triu_indices(len(joints), 1)
+    return np.asarray(np.linalg.norm(joints[i] - joints[j], axis=1))
 
 
 @checked
@@ -175,6 +234,28 @@ def _numbers(name: str, values: Any) -> tuple[float, ...]:
     if isinstance(listed, str) or not isinstance(listed, Sequence):
         raise InvalidGeometry(f"{name} is a list of numbers, got {shown(values)}")
     return tuple(_number(name, value) for value in listed)
+
+
+def _side(geometry: Geometry, side: str, letter: str) -> dict[str, Any]:
+    """What the fields of one side become: a circle as it is given, or points and how far apart they are."""
+    radius, angles = f"{side}_radius", f"{side}_angles"
+    joints = getattr(geometry, side)
+    reference = _numbers("reference", geometry.reference)
+    if len(reference) != 3:
+        raise InvalidGeometry(f"reference is three lengths x, y, z, got {geometry.reference!r}")
+    if joints is None:
+        given = {
+            radius: _radius(radius, getattr(geometry, radius)),
+            angles: _angles(angles, letter, getattr(geometry, angles)),
+        }
+        return {**given, "reference": reference}
+    points = array(f"{side}: the joints as points", joints, "joints", 3, error=InvalidGeometry)
+    if len(points) < 2 or not gaps(points).min() > 0.0:
+        raise InvalidGeometry(f"{side} has at least two joints, each in a place of its own, got {shown(joints)}")
+    spread = float(np.sqrt(((points - points.mean(axis=0)) ** 2).sum(axis=1).mean()))
+    if len(getattr(geometry, angles)) or getattr(geometry, radius) not in (0.0, spread):
+        raise InvalidGeometry(f"give the joints of the {side} as points or by {radius} and {angles}, not both")
+    return {side: tuple(map(tuple, points.tolist())), radius: spread, angles: (), "reference": reference}
 
 
 def _radius(name: str, value: object) -> float:

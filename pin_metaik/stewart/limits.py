@@ -55,6 +55,9 @@ _WORDS = {
 }
 
 
+ROUNDING = 1e-12  # of a length: what decimals of a file leave
+
+
 @dataclass(frozen=True)
 class LegLimits:
     """Limits of every leg of a platform. Lengths in m, angles in rad.
@@ -68,6 +71,9 @@ class LegLimits:
             share a joint are not compared.
         home: Position of P, with the platform level, at which the axes of all joints point along their legs. Without
             it they stand square on their plates, towards the other plate.
+        dead_length: What a leg is longer than its stroke when it is retracted (its ends, nut and motor), so that
+            ``longest <= 2 shortest - dead_length``. None: it is not looked at, as for legs of several stages.
+        speed: How fast a leg can change its length, m/s; None: that is not looked at.
 
     Raises:
         InvalidGeometry: A shortest length that is not above zero or above the longest, or a limit out of its range.
@@ -79,6 +85,8 @@ class LegLimits:
     platform_angle: float = pi
     distance: float = 0.0
     home: tuple[float, float, float] | None = None
+    dead_length: float | None = None
+    speed: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("shortest", "longest", "base_angle", "platform_angle", "distance"):
@@ -94,6 +102,17 @@ class LegLimits:
                 raise InvalidGeometry(f"{name} lies above 0 and up to pi rad, got {getattr(self, name):g}")
         if self.distance < 0.0:
             raise InvalidGeometry(f"the distance between legs is not below zero, got {self.distance:g} m")
+        for name, least in (("dead_length", "not below"), ("speed", "above")):
+            if (value := getattr(self, name)) is None:
+                continue
+            object.__setattr__(self, name, float(number(f"{name} of the legs", value, InvalidGeometry)))
+            if value < 0.0 or (least == "above" and value == 0.0):
+                raise InvalidGeometry(f"{name} of the legs is {least} zero, got {value:g}")
+        if self.too_long > 0.0:
+            raise InvalidGeometry(
+                f"the longest leg, {self.longest:g} m, is more than twice the shortest, {self.shortest:g} m, less the "
+                f"dead length, {self.dead_length:g} m: it can be {self.longest - self.too_long:g} m"
+            )
         if self.home is not None:
             home = array("home is the position x, y, z of P", self.home, 3, error=InvalidGeometry)
             object.__setattr__(self, "home", tuple(home.tolist()))
@@ -102,6 +121,11 @@ class LegLimits:
     def stroke(self) -> float:
         """How far a leg extends, m."""
         return self.longest - self.shortest
+
+    @property
+    def too_long(self) -> float:
+        """How much longer the longest leg is than a retracted one with its dead length could become, m; 0 if not."""
+        return 0.0 if self.dead_length is None else excess(self.shortest, self.longest, self.dead_length)
 
     @property
     def beyond_lengths(self) -> bool:
@@ -128,3 +152,9 @@ class LegLimits:
         for leg in np.flatnonzero(d[:, 0] == 0.0):
             raise InvalidGeometry(f"leg {leg + 1} has no length at home, so no direction for its joints' axes")
         return np.array([v / d, -v / d])
+
+
+def excess(shortest: float, longest: float, dead_length: float) -> float:
+    """How much longer a leg is, at its longest, than its body allows, m; 0 but for rounding if it is not."""
+    over = longest - (2.0 * shortest - dead_length)
+    return over if over > ROUNDING * longest else 0.0

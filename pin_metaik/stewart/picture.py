@@ -14,10 +14,11 @@ from pin_metaik.optimize.space import Array
 from pin_metaik.output import writable
 from pin_metaik.stewart.body import body_of, draw_body, polygons
 from pin_metaik.stewart.design import Designed
-from pin_metaik.stewart.geometry import on_circle
+from pin_metaik.stewart.geometry import Geometry, on_circle
 from pin_metaik.stewart.inverse import leg_vectors
 from pin_metaik.stewart.mechanism import Mechanism
 from pin_metaik.stewart.poses import PoseLike, one_pose, pose_at
+from pin_metaik.stewart.trajectory import Motion
 from pin_metaik.stewart.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -103,6 +104,83 @@ def draw_into(
 
 
 @checked
+def draw_above(mechanism: Mechanism, pose: PoseLike | None = None) -> Figure:
+    """A mechanism seen from above: where the joints of both sides are, and the legs between them.
+
+    Args:
+        mechanism: What to draw.
+        pose: Where the platform is; default: level over the base at half stroke.
+
+    Raises:
+        InvalidTarget: Not a pose.
+        MissingExtra: matplotlib is not installed.
+    """
+    T = one_pose(_middle(mechanism, None) if pose is None else pose)
+    geometry, scale = mechanism.geometry, 1.0 / mechanism.metres
+    figure = _figure((6.4, 6.0))
+    axes: Any = figure.add_subplot(aspect="equal")
+    moved = T[:3, 3] + geometry.platform_joints @ T[:3, :3].T
+    for i, (b, v) in enumerate(zip(geometry.b, leg_vectors(geometry, T[None])[0], strict=True), start=1):
+        axes.plot(*(scale * np.array([b, b + v])[:, :2]).T, color=ROD, lw=1.6)
+        axes.text(*(scale * (b + 0.5 * v)[:2]), f"{i}", fontsize=8, color=STEEL, ha="center", va="center", bbox=TAG)
+    base_ring, moving_ring = _rings(geometry)
+    aside = 0.07 * (geometry.base_radius + geometry.platform_radius)
+    sides = ((geometry.base_joints, base_ring, "B", STEEL), (moved, T[:3, 3] + moving_ring @ T[:3, :3].T, "M", PLATE))
+    for joints, ring, letter, colour in sides:
+        axes.plot(*(scale * ring[:, :2]).T, color=colour, lw=1, alpha=0.6)
+        axes.scatter(*(scale * joints[:, :2]).T, color=colour, s=36, zorder=3)
+        middle = joints.mean(axis=0)
+        for k, joint in enumerate(joints, start=1):
+            outward = joint - middle
+            place = scale * (joint + aside * outward / max(float(np.linalg.norm(outward)), 1e-12))[:2]
+            label = axes.text(*place, f"{letter}{k}", color=colour, fontsize=10, fontweight="bold", zorder=4)
+            label.set(ha="center", va="center", path_effects=_halo())
+    axes.set_xlabel(f"x ({mechanism.unit})")
+    axes.set_ylabel(f"y ({mechanism.unit})")
+    axes.set_title(f"{mechanism.name} ({geometry.type}) from above", fontsize=11)
+    axes.margins(0.12)
+    axes.grid(alpha=0.3)
+    return figure
+
+
+@checked
+def draw_motion(motion: Motion, mechanism: Mechanism) -> Figure:
+    """What the legs do along a trajectory: their lengths and rates over time with their limits, and dexterity.
+
+    Args:
+        motion: What ``follow`` found.
+        mechanism: Whose legs they are, for its limits and its unit of length.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+    """
+    figure = _figure((7.2, 7.2))
+    panels = figure.subplots(3, sharex=True)
+    times, limits, scale = motion.trajectory.times, mechanism.limits, 1.0 / mechanism.metres
+    curves = ((scale * motion.lengths, "length", mechanism.unit), (scale * motion.rates, "rate", f"{mechanism.unit}/s"))
+    for axes, (values, what, unit) in zip(panels, curves, strict=False):
+        for i, column in enumerate(values.T, start=1):
+            axes.plot(times, column, lw=1.4, label=f"leg {i}")
+        axes.set_ylabel(f"{what} of legs ({unit})")
+    speeds = () if limits.speed is None else (-limits.speed, limits.speed)
+    for axes, ends in zip(panels, ((limits.shortest, limits.longest), speeds), strict=False):
+        for end in ends:
+            axes.axhline(scale * end, color=STEEL, ls="--", lw=1)
+    panels[2].plot(times, motion.nu, color=PLATE)
+    panels[2].set_ylabel("dexterity nu")
+    panels[2].set_xlabel("time (s)")
+    panels[2].set_ylim(0.0, 1.0)
+    bad = ~motion.reached
+    for axes in panels:
+        axes.grid(alpha=0.3)
+        axes.fill_between(times, 0, 1, where=bad, transform=axes.get_xaxis_transform(), color="#d0302020", step="mid")
+    panels[0].legend(fontsize=8, ncols=6, loc="center")
+    shaded = "; shaded: beyond a limit" if bad.any() else ""
+    panels[0].set_title(f"{mechanism.name}: legs along the way (dashed: limits{shaded})", fontsize=11)
+    return figure
+
+
+@checked
 def draw_history(designed: Designed) -> Figure:
     """Best fitness over designs looked at.
 
@@ -162,13 +240,13 @@ def _mechanism(axes: Any, mechanism: Mechanism, T: Array, scale: float) -> None:
     """Plates as polygons of their joints on their circles, legs as cylinder and rod, joints as dots."""
     geometry = mechanism.geometry
     R, P = T[:3, :3], T[:3, 3]
-    round_about = np.linspace(0.0, 2 * np.pi, 73)
-    moving = on_circle(geometry.platform_radius, round_about) - np.array(geometry.reference)
-    axes.plot(*(scale * on_circle(geometry.base_radius, round_about)).T, color=STEEL, lw=1, alpha=0.5)
-    axes.plot(*(scale * (P + moving @ R.T)).T, color=PLATE, lw=1, alpha=0.6)
     platform_joints = P + geometry.platform_joints @ R.T
-    _plate(axes, scale * geometry.base_joints, STEEL)
-    _plate(axes, scale * platform_joints, PLATE)
+    rings = _rings(geometry)
+    for ring, joints, colour, at in zip(
+        rings, (geometry.base_joints, platform_joints), (STEEL, PLATE), (np.eye(4), T), strict=True
+    ):
+        axes.plot(*(scale * (at[:3, 3] + ring @ at[:3, :3].T)).T, color=colour, lw=1, alpha=0.6)
+        _plate(axes, scale * joints, colour)
     for i, (b, v) in enumerate(zip(geometry.b, leg_vectors(geometry, T)[0], strict=True), start=1):
         share = min(1.0, 0.9 * mechanism.limits.shortest / max(float(np.linalg.norm(v)), 1e-12))
         axes.plot(*(scale * np.array([b, b + share * v])).T, color=STEEL, lw=4, solid_capstyle="round")
@@ -187,6 +265,14 @@ def _mechanism(axes: Any, mechanism: Mechanism, T: Array, scale: float) -> None:
             label.set(ha="center", va="center", path_effects=_halo())
 
 
+def _rings(geometry: Geometry) -> tuple[Array, Array]:
+    """Points (k, 3) of the circles of both sides in their frames; none for joints anywhere."""
+    round_about = np.linspace(0.0, 2 * np.pi, 73)
+    base = on_circle(geometry.base_radius, round_about)
+    moving = on_circle(geometry.platform_radius, round_about) + geometry.platform_centre
+    return base[: 0 if geometry.base else None], moving[: 0 if geometry.platform else None]
+
+
 def _halo() -> list[Any]:
     """A white edge round letters, so that what is behind them does not hide them."""
     effects = import_module("matplotlib.patheffects")
@@ -194,6 +280,9 @@ def _halo() -> list[Any]:
 
 
 def _plate(axes: Any, corners: Array, colour: str) -> None:
+    """A plate through its joints, taken round their middle."""
+    out = corners - corners.mean(axis=0)
+    corners = corners[np.argsort(np.arctan2(out[:, 1], out[:, 0]))]
     axes.add_collection3d(polygons([corners], facecolor=colour, alpha=0.22, edgecolor=colour))
 
 

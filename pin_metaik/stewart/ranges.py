@@ -16,6 +16,7 @@ from pin_metaik.stewart.geometry import Geometry
 from pin_metaik.stewart.grid import Range, as_range
 from pin_metaik.stewart.limits import LegLimits
 
+SIDES = ("base", "platform")
 Span: TypeAlias = float | Range
 """A value that is fixed, or the range of one that is free."""
 
@@ -31,6 +32,8 @@ class Ranges:
         platform_angles: One for each platform joint.
         shortest: Length of a retracted leg.
         longest: Length of an extended leg.
+        base: x, y and z of each base joint, for joints anywhere; a circle is given up for them.
+        platform: x, y and z of each platform joint, likewise, in the platform's frame.
 
     Raises:
         InvalidBounds: A range that is not two finite numbers, the lower first; a length that may not be above zero.
@@ -42,6 +45,8 @@ class Ranges:
     platform_angles: tuple[Span, ...] | None = None
     shortest: Span | None = None
     longest: Span | None = None
+    base: tuple[tuple[Span, Span, Span], ...] | None = None
+    platform: tuple[tuple[Span, Span, Span], ...] | None = None
 
     def __post_init__(self) -> None:
         for name in (field.name for field in fields(self)):
@@ -52,6 +57,8 @@ class Ranges:
                 if not isinstance(value, (tuple, list)):
                     raise InvalidBounds(f"the range of {name} is one value or range for each joint, got {value!r}")
                 spans: object = tuple(_span(name, span) for span in value)
+            elif name in SIDES:
+                spans = _points(name, value)
             else:
                 spans = _span(name, value)
                 if not np.min(spans) > 0.0:
@@ -61,12 +68,14 @@ class Ranges:
 
 @dataclass(frozen=True, eq=False)
 class Dimensions:
-    """The numbers a platform is made of, not yet known to make sense."""
+    """The numbers a platform is made of, not yet known to make sense: of each side a circle, or joints (k, 3)."""
 
     base_radius: float
     platform_radius: float
     base_angles: Array
     platform_angles: Array
+    base: Array
+    platform: Array
     shortest: float
     longest: float
 
@@ -78,36 +87,41 @@ class Variables:
     Attributes:
         lower: Lower bounds of all dimensions, one after the other; where fixed, their value.
         upper: Upper bounds, likewise.
-        bases: How many of them are angles of base joints.
-        platforms: How many are angles of platform joints.
+        counts: How many of them are base angles, platform angles, coordinates of base joints and of platform joints.
     """
 
     lower: Array
     upper: Array
-    bases: int
-    platforms: int
+    counts: tuple[int, int, int, int]
 
     @classmethod
     def of(cls, ranges: Ranges, geometry: Geometry, limits: LegLimits) -> Variables:
         """The variables of these ranges; what they leave out is fixed as it is.
 
         Raises:
-            InvalidBounds: Angles for more or fewer joints than there are, or nothing is free.
+            InvalidBounds: Angles or points for more or fewer joints than there are, both for one side, or nothing is
+                free.
         """
+        anywhere = [getattr(ranges, side) is not None or getattr(geometry, side) is not None for side in SIDES]
+        own = _dimensions(geometry, limits, *anywhere)
         spans: list[Span] = []
-        own = _dimensions(geometry, limits)
-        for name in (field.name for field in fields(ranges)):
+        for name in (field.name for field in fields(own)):
             given, value = getattr(ranges, name), getattr(own, name)
-            if name.endswith("angles"):
+            side = name.split("_")[0]
+            if given is not None and side in SIDES and name != side and anywhere[SIDES.index(side)]:
+                raise InvalidBounds(f"the joints of the {side} are anywhere: give {side} ranges of x, y, z, not {name}")
+            if isinstance(value, np.ndarray):
                 if given is not None and len(given) != len(value):
                     raise InvalidBounds(f"{name} has {len(given)} ranges for {len(value)} joints")
-                spans += value.tolist() if given is None else given
+                listed = value.tolist() if given is None else given
+                spans += [span for joint in listed for span in joint] if name in SIDES else listed
             else:
                 spans.append(value if given is None else given)
         ends = np.array([span if isinstance(span, tuple) else (span, span) for span in spans])
         if not (ends[:, 0] < ends[:, 1]).any():
             raise InvalidBounds("every dimension is fixed: give at least one a range [lower, upper]")
-        return cls(ends[:, 0], ends[:, 1], len(own.base_angles), len(own.platform_angles))
+        counts = (own.base_angles.size, own.platform_angles.size, own.base.size, own.platform.size)
+        return cls(ends[:, 0], ends[:, 1], counts)
 
     @property
     def free(self) -> NDArray[np.bool_]:
@@ -129,32 +143,40 @@ class Variables:
         """The dimensions at a point x (v,)."""
         p = self.lower.copy()
         p[self.free] = x
-        rest = p[2:]
-        return Dimensions(
-            float(p[0]),
-            float(p[1]),
-            rest[: self.bases],
-            rest[self.bases : self.bases + self.platforms],
-            float(p[-2]),
-            float(p[-1]),
-        )
+        base_angles, platform_angles, base, platform = np.split(p[2:-2], np.cumsum(self.counts)[:-1])
+        points = base.reshape(-1, 3), platform.reshape(-1, 3)
+        return Dimensions(float(p[0]), float(p[1]), base_angles, platform_angles, *points, float(p[-2]), float(p[-1]))
 
     def point(self, geometry: Geometry, limits: LegLimits) -> Array:
         """The point x (v,) of a platform, wherever its fixed dimensions are."""
-        own = _dimensions(geometry, limits)
-        p = np.hstack([getattr(own, field.name) for field in fields(own)])
+        own = _dimensions(geometry, limits, self.counts[2] > 0, self.counts[3] > 0)
+        p = np.hstack([np.ravel(getattr(own, field.name)) for field in fields(own)])
         return np.asarray(p[self.free])
 
 
-def _dimensions(geometry: Geometry, limits: LegLimits) -> Dimensions:
+def _dimensions(geometry: Geometry, limits: LegLimits, base_anywhere: bool, platform_anywhere: bool) -> Dimensions:
+    """The dimensions of a platform; of joints anywhere no radius and no angles."""
+    none, nowhere = np.empty(0), np.empty((0, 3))
     return Dimensions(
-        geometry.base_radius,
-        geometry.platform_radius,
-        np.array(geometry.base_angles),
-        np.array(geometry.platform_angles),
+        0.0 if base_anywhere else geometry.base_radius,
+        0.0 if platform_anywhere else geometry.platform_radius,
+        none if base_anywhere else np.array(geometry.base_angles),
+        none if platform_anywhere else np.array(geometry.platform_angles),
+        geometry.base_joints if base_anywhere else nowhere,
+        geometry.platform_joints + geometry.reference if platform_anywhere else nowhere,
         limits.shortest,
         limits.longest,
     )
+
+
+def _points(name: str, value: object) -> tuple[tuple[Span, Span, Span], ...]:
+    try:
+        joints = [tuple(joint) for joint in value]  # type: ignore[attr-defined]  # what is no list is told
+    except TypeError:
+        joints = [()]
+    if not all(len(joint) == 3 for joint in joints):
+        raise InvalidBounds(f"the ranges of {name} are x, y, z of each joint, each a value or a range, got {value!r}")
+    return tuple((_span(name, x), _span(name, y), _span(name, z)) for x, y, z in joints)
 
 
 def _span(name: str, value: object) -> Span:

@@ -16,6 +16,10 @@
     angles = [60, 180, 300]                # of M1, M2 ...
     reference = [0, 0, 20]                 # optional: the point P that poses place, from the centre of the circle
 
+    # or, of either side or both, joints anywhere, before the first table:
+    # base = [[250, 0, 10], [-125, 217, 0], ...]    # B1, B2 ... in the base frame
+    # platform = [[60, 104, 5], ...]                # M1, M2 ... in the platform's; with a reference: [platform] joints
+
     [legs]
     base = [1, 1, 2, 2, 3, 3]              # the base joint of each leg, counted from 1 ...
     platform = [3, 1, 1, 2, 2, 3]          # ... and its platform joint
@@ -26,6 +30,8 @@
     platform_angle = 45
     distance = 20
     home = [0, 0, 250]
+    dead_length = 100                      # optional: what a retracted leg is longer than its stroke
+    speed = 50                             # optional: the fastest that a leg extends, its unit of length a second
 
     [workspace]                            # optional, see Grid
     counts = [40, 40, 40]
@@ -50,6 +56,7 @@
     [design.ranges]                        # one value: fixed; two: free between them; left out: as above
     base_radius = [42, 315]
     base_angles = [0, [60, 180], [180, 300]]
+    # joints anywhere: platform = [[[50, 70], 104, [0, 10]], ...]: x, y and z of each, a value or a range
 
     [design.workspace]                     # the grid designs are compared on; same keys as [workspace]
     counts = [14, 14, 14]
@@ -80,11 +87,11 @@ from pin_metaik.stewart.grid import Grid
 from pin_metaik.stewart.limits import LegLimits
 from pin_metaik.stewart.mechanism import Mechanism
 from pin_metaik.stewart.numbers import ANGLES, LENGTHS, PURE, Unit
-from pin_metaik.stewart.ranges import Ranges
+from pin_metaik.stewart.ranges import SIDES, Ranges
 from pin_metaik.stewart.tables import Table
 from pin_metaik.stewart.task import DesignTask
 
-OPTIONAL_LIMITS = ("base_angle", "platform_angle", "distance", "home")
+OPTIONAL_LIMITS = ("base_angle", "platform_angle", "distance", "home", "dead_length", "speed")
 GRID = ("counts", "x", "y", "z", "steps", "roll", "pitch", "yaw")
 DESIGN = (
     "algorithm",
@@ -158,8 +165,6 @@ def _legs_table(content: object, path: str) -> Table:
 
 
 def _geometry(content: dict[str, Any], legs: Table, path: str, length: Unit, angle: Unit) -> Geometry:
-    base = Table(content["base"], f"{path}: base", ("radius", "angles"))
-    platform = Table(content["platform"], f"{path}: platform", ("radius", "angles"), ("reference",))
     if "connection" in legs:
         pairs = legs_of(legs.content["connection"])
     else:
@@ -169,15 +174,23 @@ def _geometry(content: dict[str, Any], legs: Table, path: str, length: Unit, ang
                 f"{legs.place}: base names {len(ends[0])} joints and platform {len(ends[1])}: one a leg each"
             )
         pairs = tuple((b - 1, m - 1) for b, m in zip(*ends, strict=True))
-    reference = platform.numbers("reference", length, 3) if "reference" in platform else (0.0, 0.0, 0.0)
-    return Geometry(
-        base.number("radius", length),
-        platform.number("radius", length),
-        base.numbers("angles", angle),
-        platform.numbers("angles", angle),
-        pairs,
-        reference,  # type: ignore[arg-type]  # three numbers, as asked for above
-    )
+    base = _side(content, "base", path, length, angle)
+    return Geometry(legs=pairs, **base, **_side(content, "platform", path, length, angle))
+
+
+def _side(content: dict[str, Any], side: str, path: str, length: Unit, angle: Unit) -> dict[str, Any]:
+    """The joints of one side as the fields of a geometry: on a circle, or anywhere."""
+    given = content[side]
+    if isinstance(given, list):
+        return {side: Table({side: given}, path, (side,)).points(side, length)}
+    anywhere = isinstance(given, dict) and "joints" in given
+    needed = ("joints",) if anywhere else ("radius", "angles")
+    table = Table(given, f"{path}: {side}", needed, ("reference",) if side == "platform" else ())
+    reference = {"reference": table.numbers("reference", length, 3)} if "reference" in table else {}
+    if anywhere:
+        return {side: table.points("joints", length), **reference}
+    circle = {f"{side}_radius": table.number("radius", length), f"{side}_angles": table.numbers("angles", angle)}
+    return {**circle, **reference}
 
 
 def _limits(legs: Table, length: Unit, angle: Unit) -> LegLimits:
@@ -186,6 +199,8 @@ def _limits(legs: Table, length: Unit, angle: Unit) -> LegLimits:
         "platform_angle": lambda key: legs.number(key, angle),
         "distance": lambda key: legs.number(key, length),
         "home": lambda key: legs.numbers(key, length, 3),
+        "dead_length": lambda key: legs.number(key, length),
+        "speed": lambda key: legs.number(key, length),
     }
     optional = {key: read[key](key) for key in OPTIONAL_LIMITS if key in legs}
     return LegLimits(legs.number("shortest", length), legs.number("longest", length), **optional)
@@ -211,11 +226,7 @@ def _task(content: object, path: str, length: Unit, angle: Unit) -> DesignTask:
     table = Table(content, f"{path}: design", ("ranges",), DESIGN)
     names = tuple(field.name for field in fields(Ranges))
     spans = Table(table.content["ranges"], f"{path}: design.ranges", (), names)
-    ranges: dict[str, Any] = {
-        key: spans.spans(key, angle) if key.endswith("angles") else spans.span(key, length)
-        for key in names
-        if key in spans
-    }
+    ranges = {key: _spans(spans, key, length, angle) for key in names if key in spans}
     given: dict[str, Any] = {key: table.whole(key) for key in ("evaluations", "seed") if key in table}
     given |= {key: table.number(key, length) for key in ("cube", "joint_gap") if key in table}
     if "index" in table:
@@ -233,6 +244,13 @@ def _task(content: object, path: str, length: Unit, angle: Unit) -> DesignTask:
     elif "settings" in table:
         raise InvalidTable(f"{path}: design: settings are those of an algorithm: name it, e.g. algorithm = 'pso'")
     return DesignTask(Ranges(**ranges), **given)
+
+
+def _spans(table: Table, key: str, length: Unit, angle: Unit) -> Any:
+    """What a design may change of one of the dimensions of ``Ranges``."""
+    if key in SIDES:
+        return table.point_spans(key, length)
+    return table.spans(key, angle) if key.endswith("angles") else table.span(key, length)
 
 
 def _algorithm(name: str, settings: object, path: str) -> Metaheuristic:

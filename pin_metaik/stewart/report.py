@@ -6,6 +6,7 @@ from math import degrees, pi
 from typing import Any, TypeAlias
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from pin_metaik.stewart.conditioning import conditioning
@@ -16,7 +17,7 @@ from pin_metaik.stewart.inverse import leg_lengths
 from pin_metaik.stewart.jacobian import jacobian
 from pin_metaik.stewart.limits import PoseState
 from pin_metaik.stewart.mechanism import Mechanism
-from pin_metaik.stewart.poses import PoseLike, as_poses
+from pin_metaik.stewart.poses import PoseLike, as_poses, one_pose
 from pin_metaik.stewart.singularity import crossings, singularities
 from pin_metaik.stewart.surveying import LEAST
 from pin_metaik.stewart.trajectory import Trajectory, follow, judge_poses
@@ -34,12 +35,13 @@ def describe(mechanism: Mechanism) -> Lines:
     """Its dimensions and limits."""
     geometry, limits = mechanism.geometry, mechanism.limits
     lines = [("type", str(geometry))]
-    for side, radius, angles in (
-        ("base", geometry.base_radius, geometry.base_angles),
-        ("platform", geometry.platform_radius, geometry.platform_angles),
-    ):
-        shown = ", ".join(f"{degrees(angle):.6g}" for angle in angles)
-        lines.append((side, f"radius {in_unit(mechanism, radius)}, joints at {shown} deg"))
+    for side, letter in (("base", "B"), ("platform", "M")):
+        if (joints := getattr(geometry, side)) is not None:
+            places = (in_unit(mechanism, joint) for joint in joints)
+            lines += [(side, f"{letter}{k} at {place}") for k, place in enumerate(places, start=1)]
+            continue
+        shown = ", ".join(f"{degrees(angle):.6g}" for angle in getattr(geometry, f"{side}_angles"))
+        lines.append((side, f"radius {in_unit(mechanism, getattr(geometry, f'{side}_radius'))}, joints at {shown} deg"))
     if any(geometry.reference):
         lines.append(("reference", f"{in_unit(mechanism, geometry.reference)} from the centre of the platform"))
     lines.append(("joint gap", in_unit(mechanism, geometry.joint_gap)))
@@ -49,6 +51,10 @@ def describe(mechanism: Mechanism) -> Lines:
             lines.append((name, f"up to {degrees(angle):.6g} deg"))
     if limits.distance > 0.0:
         lines.append(("legs apart", f"at least {in_unit(mechanism, limits.distance)}"))
+    if limits.dead_length is not None:
+        lines.append(("dead length", in_unit(mechanism, limits.dead_length)))
+    if limits.speed is not None:
+        lines.append(("speed of legs", f"up to {in_unit(mechanism, limits.speed)}/s"))
     return lines
 
 
@@ -62,7 +68,7 @@ def notes(mechanism: Mechanism, workspace: Workspace | None = None) -> list[str]
             f"{geometry.n} legs between universal and spherical joints leave the platform {free} "
             f"freedom{'s' if free > 1 else ''}: they do not hold it, and dexterity says only how they act on it"
         )
-    if limits.stroke > limits.shortest:
+    if limits.stroke > limits.shortest and limits.dead_length is None:
         said.append(
             f"a stroke of {in_unit(mechanism, limits.stroke)} does not fit into a leg that is "
             f"{in_unit(mechanism, limits.shortest)} long when retracted, unless it telescopes in several stages"
@@ -110,6 +116,8 @@ def at_pose(mechanism: Mechanism, pose: PoseLike) -> Lines:
         ("pose is", PoseState[found["state"].upper()].words),
         ("dexterity nu", f"{found['nu']:.6f}"),
     ]
+    rows = (", ".join(f"{value:9.6f}" for value in row) for row in found["jacobian"])
+    lines += [("Jacobian" if i == 1 else "", f"leg {i}: {row}") for i, row in enumerate(rows, start=1)]
     if found["nearest_legs"] is not None:
         i, j = found["nearest_legs"]
         lines.append(("nearest legs", f"{i} and {j}, {in_unit(mechanism, found['leg_distance'])} apart"))
@@ -125,6 +133,9 @@ def along(mechanism: Mechanism, way: Trajectory) -> Lines:
         ("fastest leg", f"{in_unit(mechanism, np.abs(motion.rates).max())}/s"),
         ("lowest nu", f"{motion.nu.min():.4g}"),
     ]
+    if (least := motion.least_seconds) is not None:
+        enough = "slow enough" if not motion.too_fast.any() else "too fast for the legs"
+        lines.append(("speed", f"{enough}: this way takes them {least:.6g} s at least"))
     for state in PoseState:
         if (share := float((motion.states == state).mean())) > 0.0:
             lines.append(("way", f"{100 * share:6.2f} %  {state.words}"))
@@ -132,6 +143,13 @@ def along(mechanism: Mechanism, way: Trajectory) -> Lines:
         what = "det J changes sign" if crossing.crosses else "singular"
         lines.append((what, f"at {crossing.time:.6g} s, {in_unit(mechanism, crossing.pose[:3, 3])}"))
     return lines
+
+
+def pose_words(mechanism: Mechanism, pose: PoseLike) -> str:
+    """A pose in words: x, y, z in the mechanism's unit, and roll, pitch, yaw in degrees."""
+    T = one_pose(pose)
+    turn = ", ".join(f"{degrees(angle.round(9)) + 0.0:.6g}" for angle in pin.rpy.matrixToRpy(T[:3, :3]))
+    return f"{in_unit(mechanism, T[:3, 3].round(9) + 0.0)}; roll, pitch, yaw {turn} deg"
 
 
 def outcome(designed: Designed) -> Lines:
@@ -202,5 +220,7 @@ def way_values(mechanism: Mechanism, way: Trajectory) -> dict[str, Any]:
         "nu": motion.nu.tolist(),
         "states": [PoseState(int(state)).name.lower() for state in motion.states],
         "reached": bool(motion.reached.all()),
+        "too_fast": bool(motion.too_fast.any()),
+        "least_seconds": motion.least_seconds,
         "singular": [{"time": c.time, "pose": c.pose.tolist(), "sign_changes": c.crosses} for c in met],
     }

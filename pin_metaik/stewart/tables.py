@@ -79,6 +79,10 @@ class Table:
             raise InvalidTable(f"{self.at(key)} is not a list of whole numbers")
         return tuple(values)
 
+    def points(self, key: str, unit: Unit) -> tuple[tuple[float, ...], ...]:
+        """A list of points of three numbers each."""
+        return tuple(tuple(self._number(key, value, unit) for value in point) for point in self._points(key))
+
     def span(self, key: str, unit: Unit) -> Span:
         """A number, or a range of two."""
         return self._span(key, self.content[key], unit)
@@ -86,6 +90,16 @@ class Table:
     def spans(self, key: str, unit: Unit) -> tuple[Span, ...]:
         """A list of numbers and ranges."""
         return tuple(self._span(key, value, unit) for value in self._list(key, None))
+
+    def point_spans(self, key: str, unit: Unit) -> tuple[tuple[Span, ...], ...]:
+        """A list of points of three numbers or ranges each."""
+        return tuple(tuple(self._span(key, value, unit) for value in point) for point in self._points(key))
+
+    def _points(self, key: str) -> list[list[Any]]:
+        points = self._list(key, None)
+        if not all(isinstance(point, list) and len(point) == 3 for point in points):
+            raise InvalidTable(f"{self.at(key)} is not a list of points [x, y, z]")
+        return points
 
     def _span(self, key: str, value: object, unit: Unit) -> Span:
         if not isinstance(value, list):

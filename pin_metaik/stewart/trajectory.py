@@ -122,6 +122,7 @@ class Motion:
         nu: Local conditioning index (k,); 0 where singular.
         states: A ``PoseState`` each (k,): the limits, and which side of a singularity.
         length: Characteristic length of nu, m.
+        speed: The fastest that a leg may be, m/s; None if that is not limited.
     """
 
     trajectory: Trajectory
@@ -130,6 +131,22 @@ class Motion:
     nu: Array
     states: NDArray[np.int8]
     length: float
+    speed: float | None = None
+
+    @property
+    def too_fast(self) -> NDArray[np.bool_]:
+        """At which poses a leg is faster than it may be (k,)."""
+        limit = np.inf if self.speed is None else self.speed
+        fast: NDArray[np.bool_] = np.abs(self.rates).max(axis=1) > limit * (1.0 + 1e-12)
+        return fast
+
+    @property
+    def least_seconds(self) -> float | None:
+        """How long this way must take so that no leg is too fast at a sample, s; None without a limit on speed."""
+        if self.speed is None:
+            return None
+        times = self.trajectory.times
+        return float((times[-1] - times[0]) * np.abs(self.rates).max() / self.speed)
 
     @property
     def reached(self) -> NDArray[np.bool_]:
@@ -162,7 +179,8 @@ def follow(
     if limits is not None:
         states = judge_poses(geometry, limits, T)
     rates = (jacobian(geometry, T) @ trajectory.twists[:, :, None])[..., 0]  # d_dot = J (v, omega)
-    return Motion(trajectory, leg_lengths(geometry, T), rates, nu, states, length)
+    speed = None if limits is None else limits.speed
+    return Motion(trajectory, leg_lengths(geometry, T), rates, nu, states, length, speed)
 
 
 @checked

@@ -35,9 +35,11 @@ def to_urdf(mechanism: Mechanism) -> str:
         ET.SubElement(ET.SubElement(robot, "material", name=colour), "color", rgba=rgba)
 
     base = ET.SubElement(robot, "link", name="base_link")
-    _cylinder(base, geometry.base_radius, thickness / 2, (0.0, 0.0, -thickness / 4), "grey")
+    _cylinder(
+        base, geometry.base_radius, thickness / 2, (geometry.base_centre - [0.0, 0.0, thickness / 4]).tolist(), "grey"
+    )
     platform = ET.SubElement(robot, "link", name="platform")
-    centre = [-value for value in geometry.reference]
+    centre = geometry.platform_centre.tolist()
     _inertial(platform, geometry.platform_radius, thickness / 2, centre)
     _cylinder(platform, geometry.platform_radius, thickness / 2, centre, "orange")
     _joint(robot, "platform_joint", "floating", "base_link", "platform")

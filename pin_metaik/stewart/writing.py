@@ -13,11 +13,12 @@ from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize import ALGORITHMS, Metaheuristic, make
 from pin_metaik.output import writable
+from pin_metaik.stewart.geometry import Geometry
 from pin_metaik.stewart.grid import Grid
 from pin_metaik.stewart.limits import LegLimits
 from pin_metaik.stewart.mechanism import Mechanism
 from pin_metaik.stewart.numbers import ANGLES, LENGTHS, PURE, Unit
-from pin_metaik.stewart.ranges import Ranges, Span
+from pin_metaik.stewart.ranges import SIDES, Ranges, Span
 from pin_metaik.stewart.task import DesignTask
 
 DEG = ANGLES["deg"]
@@ -48,16 +49,7 @@ def to_toml(mechanism: Mechanism) -> str:
     base, platform = zip(*geometry.legs, strict=True)
     lines = [f"name = {_text(mechanism.name)}", f"length = {_text(mm.name)}", f"angle = {_text(DEG.name)}"]
     lines += [f"{key} = {_text(value)}" for key in ("description", "source") if (value := getattr(mechanism, key))]
-    lines += [
-        "",
-        "[base]",
-        f"radius = {mm.write(geometry.base_radius)}",
-        f"angles = {_list(geometry.base_angles, DEG)}",
-    ]
-    lines += ["", "[platform]", f"radius = {mm.write(geometry.platform_radius)}"]
-    lines += [f"angles = {_list(geometry.platform_angles, DEG)}"]
-    if any(geometry.reference):
-        lines += [f"reference = {_list(geometry.reference, mm)}"]
+    lines += _joints(geometry, mm)
     lines += [
         "",
         "[legs]",
@@ -74,6 +66,23 @@ def to_toml(mechanism: Mechanism) -> str:
     return "\n".join(lines) + "\n"
 
 
+def _joints(geometry: Geometry, mm: Unit) -> list[str]:
+    """The joints of both sides: what is a key of the file itself comes before the tables."""
+    reference = [f"reference = {_list(geometry.reference, mm)}"] if any(geometry.reference) else []
+    keys, tables = [], []
+    for side, more in (("base", []), ("platform", reference)):
+        joints = getattr(geometry, side)
+        if joints is None:
+            angles = _list(getattr(geometry, f"{side}_angles"), DEG)
+            circle = [f"radius = {mm.write(getattr(geometry, f'{side}_radius'))}", f"angles = {angles}"]
+            tables += _section(side, [*circle, *more])
+        elif more:
+            tables += _section(side, [f"joints = {_points(joints, mm)}", *more])
+        else:
+            keys.append(f"{side} = {_points(joints, mm)}")
+    return keys + tables
+
+
 def _limits(limits: LegLimits, mm: Unit) -> list[str]:
     lines = [f"shortest = {mm.write(limits.shortest)}", f"longest = {mm.write(limits.longest)}"]
     for key in ("base_angle", "platform_angle"):
@@ -83,6 +92,9 @@ def _limits(limits: LegLimits, mm: Unit) -> list[str]:
         lines.append(f"distance = {mm.write(limits.distance)}")
     if limits.home is not None:
         lines.append(f"home = {_list(limits.home, mm)}")
+    for key in ("dead_length", "speed"):
+        if (value := getattr(limits, key)) is not None:
+            lines.append(f"{key} = {mm.write(value)}")
     return lines
 
 
@@ -121,8 +133,13 @@ def _ranges(ranges: Ranges, mm: Unit) -> list[str]:
         value = getattr(ranges, name)
         if value is None:
             continue
-        angles = name.endswith("angles")
-        shown = f"[{', '.join(_span(span, DEG) for span in value)}]" if angles else _span(value, mm)
+        if name in SIDES:
+            joints = (", ".join(_span(span, mm) for span in joint) for joint in value)
+            shown = f"[{', '.join(f'[{joint}]' for joint in joints)}]"
+        elif name.endswith("angles"):
+            shown = f"[{', '.join(_span(span, DEG) for span in value)}]"
+        else:
+            shown = _span(value, mm)
         lines.append(f"{name} = {shown}")
     return lines
 
@@ -142,6 +159,10 @@ def _section(name: str, lines: list[str]) -> list[str]:
 
 def _span(span: Span, unit: Unit) -> str:
     return _list(span, unit) if isinstance(span, tuple) else unit.write(span)
+
+
+def _points(points: Iterable[Iterable[float]], unit: Unit) -> str:
+    return f"[{', '.join(_list(point, unit) for point in points)}]"
 
 
 def _list(values: Iterable[float], unit: Unit) -> str:

@@ -123,7 +123,7 @@ def test_a_design_is_saved_before_it_is_printed(tmp_path, monkeypatch):
     def closed(*arguments, **keywords):
         raise BrokenPipeError
 
-    monkeypatch.setattr("pin_metaik.cli.stewart._show", closed)
+    monkeypatch.setattr("pin_metaik.cli.stewart.design.show_lines", closed)
     out, history = tmp_path / "x.toml", tmp_path / "h.csv"
     run("design", "stroke_50", "--evaluations", 60, "-o", out, "--history", history)
     assert load_mechanism(out).geometry.joint_gap >= 0.042

@@ -1,0 +1,18 @@
+"""``pin-metaik stewart``: begin, analyse, design and show general Stewart platforms."""
+
+from __future__ import annotations
+
+import typer
+
+from pin_metaik.cli.stewart import analyse, design, move, show, types
+
+app = typer.Typer(
+    help="General Stewart platforms, 3x3 to 6x6: analysis and dimensional optimisation.", no_args_is_help=True
+)
+app.command("new")(show.new)
+app.command("show")(show.show)
+app.command("analyse")(analyse.analyse)
+app.command("forward", context_settings={"ignore_unknown_options": True})(move.forward)
+app.command("follow")(move.follow)
+app.command("design")(design.design)
+app.command("types")(types.types)

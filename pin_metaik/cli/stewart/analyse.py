@@ -1,0 +1,90 @@
+"""``pin-metaik stewart analyse``: workspace, dexterity, singularities, a pose, a straight way."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from pin_metaik import stewart
+from pin_metaik.cli.codes import INTERRUPTED
+from pin_metaik.cli.stewart.common import (
+    Cells,
+    File,
+    Json,
+    Length,
+    Norm,
+    Picture,
+    Six,
+    can_write,
+    measured,
+    pose_of,
+    show_lines,
+)
+from pin_metaik.errors import InvalidTarget
+from pin_metaik.interrupts import kept
+from pin_metaik.stewart import Verdict
+from pin_metaik.stewart.points import points_file
+from pin_metaik.stewart.report import along, assess, at_pose, describe, pose_values, values, way_values
+
+
+def analyse(
+    file: File,
+    pose: Annotated[
+        Six | None,
+        typer.Option(metavar="X Y Z R P Y", help="Also one pose: its unit of length, and degrees Rz(Y) Ry(P) Rx(R)."),
+    ] = None,
+    to: Annotated[
+        Six | None,
+        typer.Option(metavar="X Y Z R P Y", help="Also the straight way from --pose to this pose."),
+    ] = None,
+    seconds: Annotated[float, typer.Option(help="How long that way takes.")] = 1.0,
+    cells: Cells = None,
+    norm: Norm = None,
+    length: Length = None,
+    picture: Picture = None,
+    points: Annotated[
+        Path | None, typer.Option(help="Also write the positions reached, with their dexterity: .csv or .ply.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Workspace, dexterity and singularities. Ctrl-C keeps what was seen.
+
+    Exit code 0: regular, 1: singular poses in it, or too few legs to hold it; 2: makes no sense, 130: interrupted.
+    """
+    mechanism = measured(stewart.load_mechanism(file), norm, length)
+    if cells is not None:
+        mechanism = replace(mechanism, grid=replace(mechanism.grid, counts=(cells, cells, cells)))
+    can_write(picture=picture)
+    if points is not None:
+        points_file(points)
+    T = None if pose is None else pose_of(mechanism, pose)
+    if to is not None and T is None:
+        raise InvalidTarget("a way needs both ends: give --pose as well as --to")
+    way = None if to is None or T is None else stewart.straight(T, pose_of(mechanism, to), seconds)
+    with stewart.progress_bar("surveying") as watch:
+        workspace = kept(lambda: mechanism.survey(watch=watch))
+    if points is not None:
+        stewart.save_points(workspace, points, mechanism.metres)
+    if picture is not None:
+        stewart.save_picture(stewart.draw(mechanism, workspace, T), picture)
+    if as_json:
+        report: dict[str, Any] = values(mechanism, workspace)
+        if T is not None:
+            report["at_pose"] = pose_values(mechanism, T)
+        if way is not None:
+            report["along_way"] = way_values(mechanism, way)
+        print(json.dumps(report, allow_nan=False))
+    else:
+        show_lines(mechanism.name, describe(mechanism))
+        if T is not None:
+            show_lines("at the pose", at_pose(mechanism, T))
+        if way is not None:
+            show_lines("along the way", along(mechanism, way))
+        show_lines("workspace", assess(mechanism, workspace))
+    if not workspace.complete:
+        raise typer.Exit(INTERRUPTED)
+    raise typer.Exit(0 if workspace.verdict is Verdict.REGULAR else 1)

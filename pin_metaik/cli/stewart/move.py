@@ -1,0 +1,87 @@
+"""``pin-metaik stewart forward`` and ``follow``: poses from leg lengths, and legs along a way from a file."""
+
+from __future__ import annotations
+
+import json
+from math import radians
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from pin_metaik import stewart
+from pin_metaik.cli.stewart.common import File, Json, Six, can_write, pose_of, show_lines
+from pin_metaik.errors import InvalidConfiguration
+from pin_metaik.stewart.report import Lines, along, in_unit, pose_words, way_values
+
+
+def forward(
+    file: File,
+    lengths: Annotated[list[float], typer.Argument(help="The length of each leg, in the file's unit.")],
+    start: Annotated[
+        Six | None, typer.Option(metavar="X Y Z R P Y", help="The pose to start from; default: level over the base.")
+    ] = None,
+    every: Annotated[bool, typer.Option("--all", help="Every assembly of six legs, not the nearest one.")] = False,
+    as_json: Json = False,
+) -> None:
+    """The pose at which the legs have these lengths, or all such poses.
+
+    Exit code 0: found, 1: no pose found, or it is not certain that these are all; 2: makes no sense.
+    """
+    mechanism = stewart.load_mechanism(file)
+    geometry = mechanism.geometry
+    if len(lengths) != geometry.n:
+        raise InvalidConfiguration(f"{mechanism.name} has {geometry.n} legs: give as many lengths, got {len(lengths)}")
+    d = [length * mechanism.metres for length in lengths]
+    report: dict[str, Any]
+    if every:
+        found = stewart.all_forward(geometry, d)
+        poses, good = found.poses, found.complete
+        lines: Lines = [("assemblies", str(found))]
+        report = {
+            "poses": poses.tolist(),
+            "complete": found.complete,
+            "solutions": found.solutions,
+            "bound": found.bound,
+        }
+    else:
+        near = stewart.forward(geometry, d, None if start is None else pose_of(mechanism, start))
+        poses, good = near.poses[near.solved], bool(near.solved.all())
+        lines = [("ended", near.status.name.lower().replace("_", " ")), ("steps", str(near.iterations[0]))]
+        lines += [("largest error", in_unit(mechanism, near.errors))]
+        report = {"poses": poses.tolist(), "status": near.status.name.lower(), "error": float(near.errors[0])}
+    if as_json:
+        print(json.dumps({"name": mechanism.name, "lengths": d, **report}, allow_nan=False))
+    else:
+        lines += [("pose", pose_words(mechanism, pose)) for pose in poses]
+        show_lines(f"{mechanism.name} with legs of {in_unit(mechanism, d)}", lines)
+    raise typer.Exit(0 if good else 1)
+
+
+def follow(
+    file: File,
+    way: Annotated[
+        Path, typer.Argument(help="A .csv file: time (s), x, y, z and, if it turns, roll, pitch, yaw (degrees).")
+    ],
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the legs over time: .csv.")] = None,
+    picture: Annotated[Path | None, typer.Option(help="Draw the legs over time: .png, .svg or .pdf.")] = None,
+    as_json: Json = False,
+) -> None:
+    """Move along a way from a file: lengths and rates of the legs, limits, dexterity, singular poses.
+
+    Exit code 0: every pose is within the limits, no leg too fast and none singular; 1: not so; 2: makes no sense.
+    """
+    mechanism = stewart.load_mechanism(file)
+    can_write(output, picture=picture)
+    trajectory = stewart.read_trajectory(way, mechanism.metres, radians(1.0))
+    motion = stewart.follow(mechanism.geometry, trajectory, mechanism.limits, mechanism.dexterity)
+    if output is not None:
+        stewart.save_motion(motion, output, mechanism.metres)
+    if picture is not None:
+        stewart.save_picture(stewart.draw_motion(motion, mechanism), picture)
+    values = way_values(mechanism, trajectory)
+    if as_json:
+        print(json.dumps({"name": mechanism.name, **values}, allow_nan=False))
+    else:
+        show_lines(f"{mechanism.name} along {way}", along(mechanism, trajectory))
+    raise typer.Exit(0 if values["reached"] and not values["too_fast"] and not values["singular"] else 1)

@@ -1,0 +1,78 @@
+"""``pin-metaik stewart types``: a design of every type of platform for one task, side by side."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from pin_metaik import stewart
+from pin_metaik.cli.codes import INTERRUPTED
+from pin_metaik.cli.stewart.common import File, Json
+from pin_metaik.output import writable
+
+
+def types(
+    file: File,
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="[TYPE]...", help="Default: " + ", ".join(stewart.NAMED) + ".")
+    ] = None,
+    evaluations: Annotated[int | None, typer.Option(min=1, help="Designs to look at in each run.")] = None,
+    runs: Annotated[int, typer.Option(min=1, help="Runs for each type, each with a seed of its own.")] = 1,
+    rng: Annotated[int | None, typer.Option(min=0, help="The first seed.")] = None,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="A folder for the best of each: .toml.")] = None,
+    as_json: Json = False,
+) -> None:
+    """Design every type of platform for the task of a file, and compare what comes of it.
+
+    Exit code 0: each has a design, 1: some have none, 2: makes no sense, 130: interrupted, with what there was.
+    """
+    mechanism = stewart.load_mechanism(file)
+    if evaluations is not None and mechanism.task is not None:
+        mechanism = replace(mechanism, task=replace(mechanism.task, evaluations=evaluations))
+    if output is not None:
+        writable(output, folder=True)
+    with stewart.progress_bar("designing") as watch:
+        found = stewart.compare_types(mechanism, names or stewart.NAMED, runs, rng=rng, watch=watch)
+    if output is not None:
+        output.mkdir(parents=True, exist_ok=True)
+        for one in found:
+            if one.designed.success:
+                stewart.save_mechanism(one.designed.mechanism, output / f"{one.type}.toml")
+    rows = [_row(one) for one in found]
+    if as_json:
+        print(json.dumps(rows, allow_nan=False))
+    else:
+        _show(rows)
+    if any(one.designed.interrupted for one in found):
+        raise typer.Exit(INTERRUPTED)
+    raise typer.Exit(0 if all(one.designed.success for one in found) else 1)
+
+
+def _row(one: stewart.TypeDesign) -> dict[str, object]:
+    score, geometry = one.designed.score, one.designed.mechanism.geometry
+    return {
+        "type": one.type,
+        "fitness": None if score is None else score.fitness,
+        "runs": [None if np.isnan(run) else run for run in one.runs],
+        "dexterity": None if score is None else score.dexterity,
+        "workspace": None if score is None else score.workspace,
+        "base_radius": geometry.base_radius,
+        "platform_radius": geometry.platform_radius,
+    }
+
+
+def _show(rows: list[dict[str, object]]) -> None:
+    columns = {"type": "type", "fitness": "fitness", "dexterity": "dexterity", "workspace": "V / cube^3"}
+    columns |= {"base_radius": "rb m", "platform_radius": "rm m"}
+    table = Table(*columns.values())
+    for row in rows:
+        cells = (row[name] for name in columns)
+        table.add_row(*(f"{cell:.4f}" if isinstance(cell, float) else str(cell or "-") for cell in cells))
+    Console(highlight=False).print(table)
