@@ -158,6 +158,11 @@ def way() -> stewart.Trajectory:
 
 
 @cache
+def moving_legs() -> stewart.Motion:
+    return stewart.follow(mechanism().geometry, way(), mechanism().limits)
+
+
+@cache
 def fitness() -> stewart.Fitness:
     return stewart.Fitness(mechanism())
 
@@ -680,6 +685,14 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "platform_angles": mechanism().geometry.platform_angles,
         "legs": mechanism().geometry.legs,
         "reference": (0.0, 0.0, 0.0),
+        "base": None,
+        "platform": None,
+    },
+    "stewart.Geometry.of_joints": lambda: {
+        "base": mechanism().geometry.base_joints,
+        "platform": mechanism().geometry.platform_joints,
+        "legs": mechanism().geometry.legs,
+        "reference": (0.0, 0.0, 0.0),
     },
     "stewart.Grid": lambda: {
         "counts": (3, 3, 3),
@@ -699,6 +712,8 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "platform_angle": 1.0,
         "distance": 0.0,
         "home": (0.0, 0.0, 0.2),
+        "dead_length": 0.05,
+        "speed": 0.1,
     },
     "stewart.LegLimits.sockets": lambda: {"geometry": mechanism().geometry},
     "stewart.Mechanism": lambda: {
@@ -720,6 +735,8 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "platform_angles": None,
         "shortest": 0.2,
         "longest": (0.2, 0.3),
+        "base": (((0.1, 0.2), 0.0, 0.0),),
+        "platform": None,
     },
     "stewart.Trajectory": lambda: {"times": way().times, "poses": way().poses, "twists": way().twists},
     "stewart.Trajectory.through": lambda: {"times": way().times, "poses": way().poses},
@@ -737,6 +754,13 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "dexterity": stewart.Dexterity(length="best"),
     },
     "stewart.closed_model": lambda: {"mechanism": mechanism()},
+    "stewart.compare_types": lambda: {
+        "mechanism": mechanism(),
+        "types": ("3x3",),
+        "runs": 1,
+        "rng": 0,
+        "watch": None,
+    },
     "stewart.conditioning": lambda: {
         "geometry": mechanism().geometry,
         "poses": LEVEL,
@@ -745,6 +769,8 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "stewart.crossings": lambda: {"geometry": mechanism().geometry, "trajectory": way()},
     "stewart.design": lambda: {"mechanism": mechanism(), "rng": 0, "watch": None},
     "stewart.draw": lambda: {"mechanism": mechanism(), "workspace": workspace(), "pose": LEVEL},
+    "stewart.draw_above": lambda: {"mechanism": mechanism(), "pose": LEVEL},
+    "stewart.draw_motion": lambda: {"motion": moving_legs(), "mechanism": mechanism()},
     "stewart.draw_history": lambda: {"designed": stewart.design(mechanism())},
     "stewart.draw_into": lambda: {
         "figure": figure(),
@@ -776,10 +802,27 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "stewart.legs_of": lambda: {"connection": mechanism().geometry.connection},
     "stewart.load_mechanism": lambda: {"name": "stroke_100"},
     "stewart.mechanism_names": dict,
+    "stewart.new_mechanism": lambda: {
+        "type": "6x3",
+        "base_radius": 0.2,
+        "platform_radius": 0.1,
+        "shortest": 0.25,
+        "longest": 0.35,
+        "name": None,
+        "legs": 6,
+        "unit": "mm",
+    },
     "stewart.pose_at": lambda: {"xyz": (0.0, 0.0, 0.2), "rpy": (0.0, 0.0, 0.0)},
     "stewart.progress_bar": lambda: {"label": "x", "console": None},
     "stewart.read_mechanism": lambda: {"path": stewart.save_mechanism(mechanism(), "saved.toml")},
+    "stewart.read_trajectory": lambda: {
+        "path": written("way.csv", "time,x,y,z\n0,0,0,1\n1,0,0,2\n"),
+        "metres": 1.0,
+        "radian": 1.0,
+    },
     "stewart.save_mechanism": lambda: {"mechanism": mechanism(), "path": "saved.toml"},
+    "stewart.save_motion": lambda: {"motion": moving_legs(), "path": "legs.csv", "metres": 1.0},
+    "stewart.save_points": lambda: {"workspace": workspace(), "path": "points.ply", "metres": 1.0},
     "stewart.save_picture": lambda: {"figure": figure(), "path": "saved.svg"},
     "stewart.save_urdf": lambda: {"mechanism": mechanism(), "path": "saved.urdf"},
     "stewart.singularities": lambda: {"workspace": workspace()},

@@ -12,6 +12,7 @@ import numpy as np
 from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import kept
+from pin_metaik.optimize.settings import few
 from pin_metaik.stewart.design import Designed, design
 from pin_metaik.stewart.fitness import task_of
 from pin_metaik.stewart.geometry import MOST_LEGS, Geometry
@@ -106,8 +107,7 @@ def compare_types(
     task = task_of(mechanism)
     if mechanism.geometry.base is not None or mechanism.geometry.platform is not None:
         raise InvalidSetting("types are compared of platforms with their joints on circles, not anywhere")
-    if runs < 1:
-        raise InvalidSetting(f"there is at least one run, got {runs}")
+    few("runs", runs, 1)
     radii = mechanism.geometry.base_radius, mechanism.geometry.platform_radius
     starts = [standard_geometry(type, *radii, legs=mechanism.geometry.n) for type in types]
     first = task.seed if rng is None else rng
