@@ -205,4 +205,4 @@ def _is_file(path: Path) -> bool:
 
 def _say(name: str, remarks: Iterable[str]) -> None:
     for remark in remarks:
-        warnings.warn(f"{name}: {remark}", UserWarning, stacklevel=3)
+        warnings.warn(f"{name}: {remark}", UserWarning, stacklevel=4)  # _say, load_robot, its check, who called
