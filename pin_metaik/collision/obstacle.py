@@ -55,7 +55,7 @@ class Obstacle:
 def _names(name: str, touching: Iterable[str]) -> tuple[str, ...]:
     try:
         names = (None,) if isinstance(touching, str | Mapping) else tuple(touching)
-    except TypeError:
+    except (TypeError, RuntimeError):  # the latter of what Pinocchio wraps and cannot list
         names = (None,)
     if not all(isinstance(one, str) for one in names):
         raise InvalidGeometry(f"what may touch {name!r} is a list of names, got {touching!r}")

@@ -66,7 +66,7 @@ NONSENSE: list[tuple[tuple[object, ...], str]] = [
     (("solve", "file", *POSE), "file"),
     (("solve", "empty.urdf", *POSE), "empty.urdf"),
     (("solve", "binary.urdf", *POSE), "binary.urdf"),
-    (("solve", "nan.urdf", *POSE, "--world", "alone"), "nan.obj"),
+    (("solve", "nan.urdf", *POSE, "--world", "alone"), "vertices that are not finite"),
     (("solve", "lost.urdf", *POSE, "--world", "alone"), "no.stl"),
     (("urdf", "ur5", "-o", "folder"), "it is a folder"),
     (("urdf", "ur5", "-o", "none/x.urdf"), "there is no folder none"),
