@@ -54,8 +54,12 @@ def main() -> None:
         f"{platform.machine()}, shared, Python {platform.python_version()}, {packages}. Times are by the clock, "
         "through Python, one thread.",
     ]
-    for lines in (answers(options.configurations), thin_walls(options.thin), many_boxes(options.boxes)):
-        page += lines
+    for section, count in (
+        (many_boxes, options.boxes),
+        (answers, options.configurations),
+        (thin_walls, options.thin),
+    ):
+        page += section(count)
         options.out.write_text("\n".join(page) + "\n", encoding="utf-8")
 
 

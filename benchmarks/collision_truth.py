@@ -165,7 +165,7 @@ class Truth:
         if isinstance(a.geometry, coal.Box) and isinstance(b.geometry, coal.Box):
             exact = apart(a.geometry.halfSide, A, b.geometry.halfSide, B)
             assert exact <= surfaces + 1e-5 and (exact > 0.0 or abs(exact - surfaces) < 1e-5)
-            return min(exact, surfaces)
+            return surfaces if exact > 0.0 else exact
         inside = surfaces > 0.0 and (self._holds(a, b, A.actInv(B)) or self._holds(b, a, B.actInv(A)))
         return -surfaces if inside else surfaces
 

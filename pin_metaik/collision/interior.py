@@ -39,7 +39,7 @@ class Interior:
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
 
-        vertices, triangles = np.array(mesh.vertices()), triangles_of(mesh)
+        vertices, triangles = np.array(mesh.vertices()), _triangles_of(mesh)
         _, same = np.unique(np.round(vertices, SAME), axis=0, return_inverse=True)
         corners = same.reshape(-1)[triangles]
         area = (corners != np.roll(corners, 1, axis=1)).all(axis=1)  # the others are needles without any
@@ -96,7 +96,7 @@ class Interior:
         return bool(holds(self.triangles, self.starts, self.boxes, self.signs, pose, points, other))
 
 
-def triangles_of(mesh: Any) -> NDArray[np.int64]:
+def _triangles_of(mesh: Any) -> NDArray[np.int64]:
     """Numbers (t, 3) of the corners of a coal mesh's triangles."""
     corners = (mesh.tri_indices(i) for i in range(mesh.num_tris))
     flat = np.fromiter((corner[k] for corner in corners for k in range(3)), dtype=np.int64, count=3 * mesh.num_tris)

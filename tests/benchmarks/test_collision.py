@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 BENCHMARK = Path(__file__).parents[2] / "benchmarks" / "collision.py"
+ORACLE = BENCHMARK.with_name("collision_oracle.py")
 
 
 @pytest.mark.slow
@@ -19,3 +20,15 @@ def test_it_measures_every_section(tmp_path: Path) -> None:
     for section in ("Checking time", "Safety", "Free of self-collision", "Among obstacles", "What each means brings"):
         assert f"## {section}" in page
     assert "| shelf | panda |" in page
+
+
+@pytest.mark.slow
+def test_the_oracle_finds_nothing_missed_or_invented(tmp_path: Path) -> None:
+    out = tmp_path / "oracle.md"
+    words = ["--configurations", "80", "--thin", "30", "--boxes", "30", "--out", str(out)]
+    done = subprocess.run([sys.executable, str(ORACLE), *words], capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    rows = [line.split(" | ") for line in out.read_text().splitlines() if "%" in line]
+    assert len(rows) == 11
+    assert all(set(cell.strip(" |")) <= set("0, ") for row in rows for cell in row[3:])
+    assert "| 30 |" in out.read_text()
