@@ -90,7 +90,7 @@ NONSENSE: dict[str, Callable[[mik.Robot, mik.Chain], Any]] = {
     "name: expected a text": lambda robot, chain: mik.load_robot(None),
     "world: expected a CollisionWorld": lambda robot, chain: mik.solve_ik(chain, PANDA_POSE, world=robot),
     "workers": lambda robot, chain: mik.solve_ik_batch(chain, [PANDA_POSE], workers=-1),
-    "a seed is a whole number of at least 0": lambda robot, chain: mik.solve_ik(chain, PANDA_POSE, rng="today"),
+    "rng is a seed of at least 0": lambda robot, chain: mik.solve_ik(chain, PANDA_POSE, rng="today"),
 }
 
 

@@ -78,6 +78,7 @@ class Description:
         _MADE_FROM[model] = self
         return model, remarks
 
+    @checked
     def geometry(self, model: pin.Model, shapes: Shapes) -> tuple[pin.GeometryModel, list[str]]:
         """Geometry of the model, meshes included, and what has to be said of it.
 

@@ -7,7 +7,7 @@ import pytest
 import pin_metaik as mik
 from pin_metaik.collision import body, simplify
 from pin_metaik.collision.body import VisualGeometry, robot_bodies
-from pin_metaik.errors import InvalidGeometry
+from pin_metaik.errors import InvalidGeometry, InvalidModel
 from tests.collision.test_mesh import CORNERS, CUBE, write
 from tests.collision.worlds import robot_of
 
@@ -36,7 +36,7 @@ def test_a_mesh_of_a_robot_that_is_not_finite_is_refused_by_its_link(tmp_path: P
 
 
 def test_a_box_of_a_robot_with_sizes_below_0_is_refused_by_its_link(tmp_path: Path) -> None:
-    with pytest.raises(InvalidGeometry, match="link 'b' of two has sizes below 0"):
+    with pytest.raises(InvalidModel, match="has a size below zero: link 'b'"):
         mik.CollisionWorld(robot(tmp_path, BOX.format("1 1 1"), BOX.format("1 -1 1")))
 
 
