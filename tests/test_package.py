@@ -1,6 +1,7 @@
 """The package as it is installed: quick to import, complete in its wheel, quick to answer."""
 
 import os
+import shutil
 import subprocess
 import sys
 import venv
@@ -41,7 +42,9 @@ def test_importing_loads_nothing_heavy() -> None:
 
 
 def test_the_first_solve_on_a_machine_compiles_and_says_so(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "pin_metaik", tmp_path / "pin_metaik", ignore=shutil.ignore_patterns("__pycache__"))
     first = run(sys.executable, tmp_path, tmp_path)
+    assert str(tmp_path) in first.stdout  # the copy, beside which no machine code lies
     assert "compiling inner loops" in first.stderr
     later = run(sys.executable, tmp_path, tmp_path)
     assert later.stderr == ""
