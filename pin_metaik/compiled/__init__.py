@@ -53,18 +53,10 @@ def jit(signature: str) -> Callable[[F], F]:
     def lazy(function: F) -> F:
         @cache
         def version(without: bool) -> Callable[..., Any]:
-            notice = Timer(WAIT, _tell)
-            notice.daemon = True
-            notice.start()
-            try:
-                with Pressed() as pressed:
-                    loop = kept(fastmath=LOOSE, **OPTIONS)(function)
-                    loop.compile(versions[without])
-                    loop.disable_compile()
-                    pressed.check()  # LLVM calls back, and what is raised in there is dropped
-                return cast(Callable[..., Any], loop)
-            finally:
-                notice.cancel()
+            with Pressed() as pressed:
+                loop = _loop(function, versions[without])
+                pressed.check()  # what is raised where LLVM, or the end of a thread, calls back is dropped
+            return loop
 
         @wraps(function)
         def call(*arguments: Any) -> Any:
@@ -77,6 +69,20 @@ def jit(signature: str) -> Callable[[F], F]:
         return cast(F, call)
 
     return lazy
+
+
+def _loop(function: Callable[..., Any], signature: str) -> Callable[..., Any]:
+    """A function compiled for a signature, or read from the cache; it says so if that takes long."""
+    notice = Timer(WAIT, _tell)
+    notice.daemon = True
+    notice.start()
+    try:
+        loop = kept(fastmath=LOOSE, **OPTIONS)(function)
+        loop.compile(signature)
+        loop.disable_compile()
+        return cast(Callable[..., Any], loop)
+    finally:
+        notice.cancel()
 
 
 @cache
