@@ -56,9 +56,14 @@ class Pressed:
     Some code catches everything: a method of somebody else's, which would then give an answer that a clean run would
     not, or a callback that C calls, whose exceptions Python drops. Signals come to the main thread: in another one this
     does nothing.
+
+    Attributes:
+        held: Whether the first Ctrl-C is only noted, for ``check`` to raise, because what runs must not be broken off.
+            A second one is handed on at once.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, held: bool = False) -> None:
+        self.held = held
         self._heard = False
         self._before: Any = None
 
@@ -84,5 +89,6 @@ class Pressed:
             raise KeyboardInterrupt
 
     def _note(self, number: int, frame: FrameType | None) -> None:
-        self._heard = True
-        self._before(number, frame)
+        first, self._heard = not self._heard, True
+        if not (self.held and first):
+            self._before(number, frame)

@@ -53,9 +53,9 @@ def jit(signature: str) -> Callable[[F], F]:
     def lazy(function: F) -> F:
         @cache
         def version(without: bool) -> Callable[..., Any]:
-            with Pressed() as pressed:
+            with Pressed(held=True) as pressed:  # broken off, numba would compile nothing more in this process
                 loop = _loop(function, versions[without])
-                pressed.check()  # what is raised where LLVM, or the end of a thread, calls back is dropped
+                pressed.check()
             return loop
 
         @wraps(function)
