@@ -10,6 +10,7 @@ forms judge the same families of targets.
 from __future__ import annotations
 
 import argparse
+import math
 import platform
 import time
 from concurrent.futures import ProcessPoolExecutor
@@ -21,12 +22,13 @@ import pinocchio as pin
 from feasible import Feasible, feasible, random_chain
 
 import pin_metaik as mik
-from pin_metaik.kinematics.proofs.arm import ProofArm, proof_arm
+from pin_metaik.kinematics.proofs.arm import WHOLE, Free, ProofArm, proof_arm
 from pin_metaik.kinematics.proofs.box_search import cover
 from pin_metaik.kinematics.proofs.closed_forms import ClosedFormProof
 
 CLOSED = ["ur5", "ur10", "rv7fl", "z1", "kinova", "puma560"]
 OTHERS = ["talos_arm", "aerial_arm", "panda", "xarm7", "pr2", "tiago", "romeo", "baxter"]
+FREE: list[Free] = [WHOLE, (True, False, False), (False, False, True), (True, True, True)]
 HALVINGS = 40
 SHARE = 100_000  # boxes or targets of one job
 
@@ -46,32 +48,32 @@ def boxes(seed: int, count: int) -> tuple[int, int, int]:
         chain = named(str(rng.choice(CLOSED + OTHERS))) if rng.random() < 0.5 else random_chain(rng)
         arms += 1
         for _ in range(20):
-            target, oriented = feasible(chain, rng), bool(rng.random() < 0.8)
-            arm = proof_arm(chain.paths, chain.limits, 0, oriented)
+            target, free = feasible(chain, rng), FREE[rng.choice(len(FREE), p=[0.7, 0.1, 0.1, 0.1])]
+            arm = proof_arm(chain.paths, chain.limits, 0, free)
             if arm is not None:
-                for excluded in halved(arm, target, oriented, rng):
+                for excluded in halved(arm, target, free, rng):
                     looked += 1
                     wrong += excluded
     return looked, wrong, arms
 
 
-def halved(arm: ProofArm, target: Feasible, oriented: bool, rng: np.random.Generator) -> list[bool]:
+def halved(arm: ProofArm, target: Feasible, free: Free, rng: np.random.Generator) -> list[bool]:
     """Whether each box on the way from all configurations towards the solution is excluded."""
-    pose, x = target.pose.copy(), target.x
-    aligned = target.aligned
-    if not oriented:  # the free joints at the tip turn z, y, z
-        free = rng.uniform(-np.pi, np.pi, 3)
-        for axis, angle in zip("zyz", free, strict=True):
-            pose[:3, :3] = pose[:3, :3] @ pin.utils.rotate(axis, angle)
-        x, aligned = np.append(x, free), 0.1
-    asked = arm.target(pose, target.near, aligned)
+    pose, x, near = target.pose.copy(), target.x, math.inf if rng.random() < 0.05 else target.near
+    aligned = 0.1 if all(free) else target.aligned
+    axes = "zyz" if all(free) else "xyz"[free.index(True)] if any(free) else ""
+    for axis in axes:  # the free joints at the tip
+        x = np.append(x, rng.uniform(-np.pi, np.pi))
+        pose[:3, :3] = pose[:3, :3] @ pin.utils.rotate(axis, float(x[-1]))
+    asked = arm.target(pose, near, aligned)
     m = arm.whole.shape[1] // 2
     centre, width = arm.whole[0, :m].copy(), arm.whole[0, m:].copy()
     x = np.clip(x, centre - width, centre + width)
-    leaves, answers = np.empty((1, 2 * m)), []
+    waiting, leaves, answers = np.empty((2, 2 * m)), np.empty((1, 2 * m)), []
     for _ in range(rng.integers(1, HALVINGS)):
-        _, kept, done = cover(*arm.arrays, *asked, np.append(centre, width)[None], 0.0, 1, leaves)
-        answers.append(bool(done and not kept))
+        waiting[0] = np.append(centre, width)
+        _, kept, left = cover(*arm.arrays, *asked, waiting, 1, 0.0, 1, leaves)
+        answers.append(left == 0 and kept == 0)
         c = rng.integers(m)
         width[c] *= 0.5
         centre[c] += width[c] if x[c] > centre[c] else -width[c]

@@ -93,7 +93,8 @@ def _tell() -> None:
 
 def _place_of_optional(signature: str) -> int | None:
     """The number of the argument whose type ends in ``?``."""
-    arguments = re.sub(r"\[[^\]]*\]", "", signature[signature.rindex("(") + 1 :])
+    plain = re.sub(r"\[[^\]]*\]|Array\([^)]*\)", "", signature)
+    arguments = plain[plain.rindex("(") + 1 :]
     return next((i for i, one in enumerate(arguments.split(",")) if "?" in one), None)
 
 

@@ -17,15 +17,19 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.ik.proof import Proof
+from pin_metaik.ik.refine.dls import SETTLED, STIFF
 from pin_metaik.ik.refine.protocol import Refinement
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solver import IKSolver
 from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import DEFAULT_TOLERANCE, Target
 from pin_metaik.kinematics import LANE, Chain
+from pin_metaik.kinematics.closed_form import DESCEND, DONE, SEARCH
 from pin_metaik.randomness import Rng
 
-SOLVED = IKStatus.SOLVED
+SOLVED, UNREACHABLE = IKStatus.SOLVED, IKStatus.UNREACHABLE
+SETTLE = np.array([STIFF, SETTLED, 100.0])  # how to come near to what is out of reach; see ``DLS.settle``
 AT_MIDDLE = 300.0  # evaluations, at most, for the middle of tolerances that are loose
 
 
@@ -58,7 +62,7 @@ def solve_fast(
         else:
             return None
     if asked is not None:
-        settings = np.array([*settings[:4], near, aligned])
+        settings = np.array([*settings[:4], near, aligned, settings[6]])
         if near > DEFAULT_TOLERANCE or DEFAULT_TOLERANCE < aligned < math.inf:
             settings[3] = min(settings[3], AT_MIDDLE)
     oriented = aligned < math.inf
@@ -67,11 +71,22 @@ def solve_fast(
     given = chain.reference if q0 is None else q0
     try:
         q = given.copy() if isinstance(given, np.ndarray) else np.array(given, dtype=float)
-        met, spent = False, 1
+        todo, spent, proof = DESCEND, 1, None
         if lane.solve_directly is not None:
-            met, position, quaternion = lane.solve_directly(lane.block, matrix, q)
-        if not met:
+            todo, position, quaternion = lane.solve_directly(lane.block, matrix, q)
+            if todo == SEARCH and chain.form_proof is not None:
+                branches = chain.form_proof.judge(matrix, near, aligned)
+                if branches.proved:
+                    proof = Proof.CLOSED_FORM
+                    nearest = branches.nearest(chain.limits, chain.paths.wiring[:, 0])
+                    if nearest is not None:
+                        chain.coordinates.write(nearest, q)
+        if todo != DONE and proof is None:
             spent, position, quaternion = lane.solve_pose(lane.block, lane.rows, starts, settings, matrix, q)
+            if spent == 0:
+                proof = Proof.REACH
+        if proof is not None:
+            spent += chain.kernels.settle_pose(lane.block, lane.rows, SETTLE, matrix, q)
     except (TypeError, ValueError, OverflowError):  # whatever it is, the long way takes it or says what is wrong
         return None
     if spent < 0:
@@ -81,10 +96,13 @@ def solve_fast(
     if chord > 1.0:  # an orientation has two quaternions
         chord = min(chord, math.dist(place[3:], [-v for v in quaternion]))
     angle = 4.0 * math.asin(0.5 * chord) if oriented else 0.0  # of small angles exact, unlike a cosine
-    if distance > near or angle > aligned:
+    met = distance <= near and angle <= aligned
+    if not met and proof is None:
         return Refinement(chain.x(q), False, spent)
-    parts = (position, quaternion) if asked is None else None
-    return IKResult(q, SOLVED, distance, angle, spent, perf_counter() - began, chain, asked, None, None, (), parts)
+    parts, took = (position, quaternion) if asked is None else None, perf_counter() - began
+    if met:
+        return IKResult(q, SOLVED, distance, angle, spent, took, chain, asked, None, None, (), None, parts)
+    return IKResult(q, UNREACHABLE, distance, angle, spent, took, chain, asked, None, None, (), proof, parts)
 
 
 def as_numbers(target: object) -> NDArray[np.float64]:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.refine import Refinement
 from pin_metaik.ik.result import IKStatus
 from pin_metaik.optimize import Budget, Result
@@ -23,36 +24,62 @@ class Ledger:
         problem: What is searched for, and what costs are of.
         x: (n,) the best coordinates so far.
         met: Whether they met the tolerances, by the kernels; Pinocchio has the last word.
-        spent: Evaluations so far.
+        spent: Evaluations so far, those of boxes among them.
+        proof: What proves that there is nothing to be found, if anything does.
         traces: Convergence of each round of a seeder: (g, 2) evaluations and best cost.
     """
 
-    def __init__(self, problem: IKProblem, budget: Budget, began: float, x0: NDArray[np.float64]) -> None:
+    def __init__(
+        self,
+        problem: IKProblem,
+        budget: Budget,
+        began: float,
+        x0: NDArray[np.float64],
+        patience: int | None = None,
+    ) -> None:
+        """Open the books; ``patience`` is how much of the budget a search may take, the rest being for boxes."""
         self.x = x0
         self.met = False
         self.spent = 0
+        self.proof: Proof | None = problem.proof
         self.traces: list[NDArray[np.float64]] = []
         self.problem = problem
         self._budget = budget
         self._began = began
         self._cost = math.inf
+        self._patience = patience
+        self._boxes = 0
 
     @property
     def status(self) -> IKStatus:
         """Why a search ended that has not solved its problem."""
-        if self.problem.gap > 0.0 or self.problem.limits.rigid:
+        if self.proof is not None:
             return IKStatus.UNREACHABLE
         timed = self._budget.seconds is not None and self.left() > 0
         return IKStatus.STOPPED if timed else IKStatus.OUT_OF_TOLERANCE
 
+    @property
+    def searched(self) -> int:
+        """Evaluations so far, but for boxes."""
+        return self.spent - self._boxes
+
     def left(self, share: float = 1.0) -> int:
-        """Evaluations left of this share of the budget."""
+        """Evaluations left of this share of what a search may take."""
         total = self._budget.evaluations
-        return ENDLESS if total is None else max(0, math.ceil(share * total) - self.spent)
+        if total is None:
+            return ENDLESS
+        most = total if self._patience is None else min(self._patience, total)
+        return max(0, min(math.ceil(share * most) - self.searched, total - self.spent))
+
+    @property
+    def left_for_boxes(self) -> int:
+        """Boxes that may still be looked at: half of the budget at most."""
+        total = self._budget.evaluations
+        return ENDLESS if total is None else max(0, min(total // 2 - self._boxes, total - self.spent))
 
     def over(self, share: float = 1.0) -> bool:
-        """Whether the search is over: solved, or this share of the budget spent."""
-        return self.met or self.left(share) == 0 or self.late(share)
+        """Whether the search is over: solved, proved to be in vain, or this share of the budget spent."""
+        return self.met or self.proof is not None or self.left(share) == 0 or self.late(share)
 
     def slice(self, share: float) -> Budget:
         """A budget for one round of seeding: this share of what is left."""
@@ -73,6 +100,11 @@ class Ledger:
         cost = float(self.problem.costs(refinement.x[None])[0])
         if cost < self._cost:
             self._cost, self.x = cost, refinement.x
+
+    def add_boxes(self, looked: int) -> None:
+        """Enter boxes that were looked at."""
+        self.spent += looked
+        self._boxes += looked
 
     def add_search(self, found: Result) -> None:
         """Enter what a seeder found and spent."""

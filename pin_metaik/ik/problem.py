@@ -15,8 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import array, checked, instance
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSetting, InvalidTarget
+from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import Chain, Limits
+from pin_metaik.kinematics.proofs.boxes import Boxes
+from pin_metaik.kinematics.proofs.closed_forms import Branches
 from pin_metaik.optimize import Box
 from pin_metaik.optimize.settings import few
 
@@ -157,13 +160,35 @@ class IKProblem:
             return np.empty((0, self.chain.n))
         return self.chain.branches(self.targets[0].pose.homogeneous, x0)
 
-    def branchless(self, x0: NDArray[np.float64]) -> bool:
-        """Whether the arm has a closed form and that no solution, so that to search on at length is in vain.
+    @cached_property
+    def proof(self) -> Proof | None:
+        """What the limits and the lengths of the links prove: that nothing meets the targets; None: nothing is proved.
 
-        It is no proof: near a singularity or a limit, rounding may hide a branch, but a short search finds those.
+        Of a chain that cannot move at all it is a proof only once it is seen that it does not stand at the targets.
         """
-        formal = self.descended is None and not self.loose and len(self.chain.form) > 0
-        return formal and not len(self.branches(x0))
+        if self.limits.rigid:
+            return Proof.LIMITS
+        return Proof.REACH if self.gap > 0.0 else None
+
+    @cached_property
+    def form_branches(self) -> Branches | None:
+        """The branches of the arm's closed form for all that the target of its whole pose accepts; None without one."""
+        proof, target = self.chain.form_proof, self.targets[0]
+        if proof is None or not all(target.counts):
+            return None
+        return proof.judge(target.pose.homogeneous, *target.allowance)
+
+    def boxes(self, t: int) -> Boxes | None:
+        """All configurations, to be excluded for target number t; None, where that proves nothing or has no bounds.
+
+        A target that frees a translation is looked at for its orientation alone; one that frees two turns, for its
+        position alone.
+        """
+        target, near = self.targets[t], self.targets[t].allowance[0]
+        free = not target.counts[3], not target.counts[4], not target.counts[5]
+        if near == math.inf and sum(free) > 1:
+            return None
+        return self.chain.boxes(t, target.pose.homogeneous, near, target.tilt, free)
 
     def near(self, count: int) -> NDArray[np.float64]:
         """Sampled coordinates (count, n) of the chain's atlas with the poses nearest to the targets, nearest first."""

@@ -5,19 +5,30 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.proof import Proof
 from pin_metaik.kinematics import Chain
 
 SHOWN = 3  # contacts in a sentence
 
 
-def out_of_reach(problem: IKProblem) -> str:
-    """What is proved to be out of reach: the frame, the wrist behind it, or all if no joint can move."""
-    if problem.limits.rigid:
+def out_of_reach(problem: IKProblem, proof: Proof | None, position_error: float, orientation_error: float) -> str:
+    """What is proved to be out of reach, by which means, and how near (m, rad) the nearest configuration found is."""
+    if proof is Proof.LIMITS or problem.limits.rigid:
         return f"out of reach: {cannot_move(problem)}"
+    if problem.gap > 0.0:
+        return too_far(problem)
+    nearest = f"the nearest found is {position_error:.2g} m and {orientation_error:.2g} rad away"
+    formed = problem.form_branches
+    if formed is not None and formed.proved:
+        return f"out of reach: {formed.why(problem.limits, problem.chain.paths.wiring[:, 0])}; {nearest}"
+    return f"out of reach: proved by excluding every box of configurations inside the limits; {nearest}"
+
+
+def too_far(problem: IKProblem) -> str:
+    """Which frame, or the wrist behind it, is proved to be farther away than the links can span."""
     gaps = [max(problem.gaps(t)) for t in range(len(problem.targets))]
     t = int(np.argmax(gaps))
     at, behind = problem.gaps(t)
@@ -28,11 +39,6 @@ def out_of_reach(problem: IKProblem) -> str:
         f"{whose}out of reach with this orientation: it puts the wrist, a point of the last joint's axis, at least "
         f"{behind:.3g} m beyond what the links before it can span"
     )
-
-
-def no_branch(problem: IKProblem, x: NDArray[np.float64]) -> str:
-    """That the closed form of an arm has no solution, where that cut the search from x (n,) short."""
-    return "the arm's closed form has no solution inside the limits; " if problem.branchless(x) else ""
 
 
 def cannot_move(problem: IKProblem) -> str:

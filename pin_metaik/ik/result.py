@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.dexterity import rank
 from pin_metaik.ik.problem import IKProblem
-from pin_metaik.ik.reasons import cannot_move, collisions, no_branch, out_of_reach
+from pin_metaik.ik.proof import Proof
+from pin_metaik.ik.reasons import cannot_move, collisions, out_of_reach
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 
@@ -29,7 +30,7 @@ class IKStatus(StrEnum):
     SOLVED = "SOLVED"
     """Within the tolerances and inside the limits, by Pinocchio; in a world also free of collisions, by coal."""
     UNREACHABLE = "UNREACHABLE"
-    """Proved out of reach: farther from, or nearer to, a joint than the links between span; or no joint can move."""
+    """Proved: no configuration inside the limits is within the tolerances; see ``IKResult.proof``."""
     OUT_OF_TOLERANCE = "OUT_OF_TOLERANCE"
     """The budget of evaluations is spent and nothing found is close enough."""
     IN_COLLISION = "IN_COLLISION"
@@ -55,6 +56,7 @@ class IKResult:
         world: The world it must not collide in, if one was given. A pickle leaves it behind, as it has all meshes in
             it: a result that comes out of one has ``None``, until a world is assigned.
         contacts: What collides at ``q``, the deepest first, when the status is ``IN_COLLISION``.
+        proof: What proves that the target is out of reach, when the status is ``UNREACHABLE``.
         parts: Position and quaternion of a target that is a pose, in the place of a copy of it.
     """
 
@@ -69,6 +71,7 @@ class IKResult:
     trace: NDArray[np.float64] | None = field(default=None, repr=False)
     world: CollisionWorld | None = field(default=None, repr=False)
     contacts: tuple[Contact, ...] = ()
+    proof: Proof | None = None
     parts: Parts | None = field(default=None, repr=False)
 
     @property
@@ -115,14 +118,14 @@ class IKResult:
             case IKStatus.SOLVED:
                 return "within the tolerances and inside the limits"
             case IKStatus.UNREACHABLE:
-                return out_of_reach(self.problem)
+                return out_of_reach(self.problem, self.proof, self.position_error, self.orientation_error)
             case IKStatus.OUT_OF_TOLERANCE:
                 still, free = cannot_move(self.problem), [n for n in self.binding if n not in self.chain.limits.stuck]
                 stuck = (f"; at a limit: {', '.join(free)}" if free else "") + (f"; {still}" if still else "")
                 asked = len(self.problem.rows)
                 lost = f"; {asked - self.rank} of {asked} directions lost there" if self.rank < asked else ""
                 spent = f"nothing close enough found in {self.evaluations} evaluations"
-                return f"{no_branch(self.problem, self.x)}{spent}; this is the nearest{stuck}{lost}"
+                return f"{spent}; this is the nearest{stuck}{lost}"
             case IKStatus.IN_COLLISION:
                 shown = collisions(self.chain, self.world, self.contacts)
                 return f"met only in collision; the least deep found: {shown}"

@@ -18,11 +18,11 @@ from pin_metaik.ik.refine.dls import DLS, PROGRESS
 from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
-from pin_metaik.kinematics.closed_form import BRANCHLESS
 from pin_metaik.optimize import Budget
 from pin_metaik.optimize.settings import few, positive
 from pin_metaik.randomness import Rng
 
+BRANCHLESS = 1000
 BATCH = 128  # starts between two looks at what came of them
 VAIN = 60  # starts in a row that led to nothing new ...
 VAIN_EACH = 15  # ... and as many more for each solution known, before the set counts as complete
@@ -134,7 +134,13 @@ def collect(
     They are in the middle of the tolerances; if nothing is, anywhere in them, which is returned as the problem first.
     """
     total = budget.evaluations or 0
-    in_vain = MIDDLE if problem.loose else BRANCHLESS if problem.branchless(x0) else total - total // 10
+    in_vain = (
+        MIDDLE
+        if problem.loose
+        else BRANCHLESS
+        if problem.form_branches is not None and problem.form_branches.proved
+        else total - total // 10
+    )
     found, complete, spent = _collect(problem, x0, rng, limit, apart, budget, in_vain)
     if len(found) or spent >= total or problem.gap > 0.0 or problem.limits.rigid:
         return problem, found, complete and not _roomy(problem, apart), spent

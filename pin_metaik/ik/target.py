@@ -136,6 +136,12 @@ class Target:
         """The largest distance (m) and angle (rad) that may still be met; ``inf`` when an axis is free."""
         return _radius(self.position_tolerance), _radius(self.orientation_tolerance)
 
+    @property
+    def tilt(self) -> float:
+        """The largest angle (rad) that may still be met about the axes that are not free; 0 where all are."""
+        each = self.orientation_tolerance
+        return _radius(tuple(t for t in each if t < FREE) if isinstance(each, tuple) else 0.0 if each == FREE else each)
+
     def judge(self, placement: pin.SE3) -> Judgement:
         """How far a world placement is from this target, and whether that is close enough; by Pinocchio."""
         instance(pin.SE3, placement=placement)
@@ -188,7 +194,7 @@ def _as_tolerance(name: str, tolerance: object) -> Tolerance:
     return float(given) if given.ndim == 0 else (float(given[0]), float(given[1]), float(given[2]))
 
 
-def _radius(tolerance: Tolerance) -> float:
+def _radius(tolerance: float | tuple[float, ...]) -> float:
     return math.hypot(*tolerance) if isinstance(tolerance, tuple) else tolerance
 
 

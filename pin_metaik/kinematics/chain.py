@@ -32,6 +32,9 @@ from pin_metaik.kinematics.model import (
 from pin_metaik.kinematics.own_limits import with_own
 from pin_metaik.kinematics.paths import Motion, base_moves, lay_paths, leader_of, motion_of
 from pin_metaik.kinematics.placing import Placing, Scratch
+from pin_metaik.kinematics.proofs.arm import WHOLE, Free, ProofArm, proof_arm
+from pin_metaik.kinematics.proofs.boxes import TINY, Boxes
+from pin_metaik.kinematics.proofs.closed_forms import ClosedFormProof
 from pin_metaik.kinematics.reach import Reach, reach_of
 from pin_metaik.optimize import Box
 from pin_metaik.optimize.settings import few
@@ -174,6 +177,7 @@ class Chain:
         self.paths = lay_paths(self.model, self.data, self.frame_ids, self._columns, self._motions, reference)
         self._moves = None if self is self._original else base_moves(self._original.paths, self.paths)
         self._reaches: dict[tuple[int, bool], Reach] = {}
+        self._proof_arms: dict[tuple[int, Free], ProofArm | None] = {}
 
     def at(self, q: ArrayLike) -> Chain:
         """The same chain with its held joints where q (nq,) has them; this one, if they are there already.
@@ -286,6 +290,31 @@ class Chain:
     def form(self) -> NDArray[np.float64]:
         """What the arm's closed form needs to know of it; no rows, if it has none."""
         return closed_form(self.paths)
+
+    @cached_property
+    def form_proof(self) -> ClosedFormProof | None:
+        """What decides by the arm's closed form whether it reaches a pose; None, if it has none."""
+        return ClosedFormProof.of(self.form, self.paths, self.limits) if len(self.form) else None
+
+    def boxes(
+        self, tip: int, pose: NDArray[np.float64], near: float, aligned: float, free: Free = WHOLE, least: float = TINY
+    ) -> Boxes | None:
+        """All configurations inside the limits, to be excluded for a target; None, where they have no bounds.
+
+        Args:
+            tip: Number of the frame.
+            pose: (4, 4) its world pose.
+            near: How far (m) from it the frame may be; ``inf``: anywhere.
+            aligned: By how much (rad) it may be turned about axes that are not free.
+            free: Which turns about the frame's own axes x, y and z are free.
+            least: Half width (rad or m) below which a box is kept instead of split.
+        """
+        if self._moves is not None:
+            return self._original.boxes(tip, np.linalg.inv(self._moves[tip]) @ pose, near, aligned, free, least)
+        if (tip, free) not in self._proof_arms:
+            self._proof_arms[tip, free] = proof_arm(self.paths, self.limits, tip, free)
+        arm = self._proof_arms[tip, free]
+        return None if arm is None else Boxes(arm, pose, near, aligned, least)
 
     def branches(self, pose: NDArray[np.float64], x0: NDArray[np.float64]) -> NDArray[np.float64]:
         """Coordinates (b, n) that an arm's closed form has for a pose (4, 4), the branch that x0 (n,) is on first.

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pin_metaik.compiled import Floats, inline, jit
 from pin_metaik.kinematics.branches import Vector, first_branch, numbers_of
+from pin_metaik.kinematics.closed_form import DESCEND, DONE, SEARCH
 from pin_metaik.kinematics.descent import EXACT, Arm, Bounds
 from pin_metaik.kinematics.desk import NOWHERE, POSE, Desk, Quaternion, desk_for, laid_out, parts_of, read, write_end
 from pin_metaik.kinematics.kernels import forward, pose_error
 from pin_metaik.kinematics.packing import Entries, sizes_of, unpack
 
 REFUSED = -1  # evaluations of what is no pose, or no configuration to start from
-DONE, DESCEND, SEARCH = 0, 1, 2  # what is left to do: nothing, from a branch that is nearly there, or from anywhere
 
 
 @inline
@@ -44,23 +44,23 @@ def take_branch(
 
 
 @inline
-def directly(block: Floats, target: Floats, q: Floats, desk: Desk) -> bool:
-    """Whether a branch is exactly there, and q written."""
+def directly(block: Floats, target: Floats, q: Floats, desk: Desk) -> int:
+    """What is left to do: DONE, if a branch is exactly there and q written; or REFUSED."""
     arm, bounds, entries, _, form = unpack(block)
     task, guess, _, _, _ = laid_out(desk, bounds[0].shape[0])
     if not read(target, q, entries, task, guess):
-        return False
-    return take_branch(arm, bounds, entries, form, target, desk, q)[1] == DONE
+        return REFUSED
+    return take_branch(arm, bounds, entries, form, target, desk, q)[1]
 
 
-@jit(f"Tuple((b1, UniTuple(f8, 3), UniTuple(f8, 4)))(f8[::1], {POSE}, f8[::1])")
-def solve_directly(block: Floats, target: Floats, q: Floats) -> tuple[bool, Vector, Quaternion]:
+@jit(f"Tuple((i8, UniTuple(f8, 3), UniTuple(f8, 4)))(f8[::1], {POSE}, f8[::1])")
+def solve_directly(block: Floats, target: Floats, q: Floats) -> tuple[int, Vector, Quaternion]:
     """One evaluation of ``lane.solve_pose`` for an arm with a closed form, in less than its time to be called.
 
-    Returns whether the target (4, 4) is met by q (nq,), and the target's position and quaternion. If it is not,
-    ``solve_pose`` says why.
+    Returns DONE if the target (4, 4) is met by q (nq,), DESCEND if a branch is nearly there, SEARCH if there is none,
+    or REFUSED; and the target's position and quaternion.
     """
     S, n = sizes_of(block)
-    met = directly(block, target, q, desk_for(n, S))
-    position, turn = parts_of(target) if met else NOWHERE
-    return met, position, turn
+    todo = directly(block, target, q, desk_for(n, S))
+    position, turn = NOWHERE if todo == REFUSED else parts_of(target)
+    return todo, position, turn

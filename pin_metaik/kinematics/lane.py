@@ -8,7 +8,7 @@ import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit
 from pin_metaik.kinematics.branches import Vector
-from pin_metaik.kinematics.closed_form import BRANCHLESS
+from pin_metaik.kinematics.closed_form import DESCEND, DONE, SEARCH
 from pin_metaik.kinematics.descent import Work, descend_from, workspace
 from pin_metaik.kinematics.desk import (
     NOWHERE,
@@ -21,7 +21,7 @@ from pin_metaik.kinematics.desk import (
     read,
     write_end,
 )
-from pin_metaik.kinematics.direct import DESCEND, DONE, REFUSED, SEARCH, take_branch
+from pin_metaik.kinematics.direct import REFUSED, take_branch
 from pin_metaik.kinematics.guesses import Looks, lookup_space
 from pin_metaik.kinematics.packing import sizes_of, unpack, unpack_atlas
 from pin_metaik.kinematics.reach import ROUNDING
@@ -97,7 +97,7 @@ def go_on(
     descent, most = (settings[0], settings[1], int(settings[2])), int(settings[3])
     (spent, todo), met = begun, False
     if todo == SEARCH and rows is None and form.shape[0] > 0:
-        most = min(most, BRANCHLESS)
+        most = min(most, int(settings[6]))
     if todo == DESCEND:
         steps, met, _ = descend_from(arm, tasks, rows, bounds, start, descent, most, np.inf, best, work)
         spent += steps
@@ -138,8 +138,8 @@ def solve_poses(
 ) -> None:
     """Search for the poses (k, 4, 4) of one tip, each on its own; with the rows ``POSITION``, for their positions.
 
-    ``block`` is the packed chain; ``settings`` (6,) are damping, progress, evaluations from one start and in all, and
-    the tolerances, m and rad. q (k, nq) is where to start from and what other joints keep, and gets the nearest to the
+    ``block`` is the packed chain; ``settings`` (7,) are damping, progress, evaluations from one start and in all, the
+    tolerances, m and rad, and evaluations for a pose for which the closed form has no branch. q (k, nq) is where to start from and what other joints keep, and gets the nearest to the
     target that was found: by the closed form, if the arm has one, then by ``search``. What is proved to be out of reach
     is not searched for. ``evaluations`` (k,) gets how many there were, or REFUSED.
     """
@@ -151,6 +151,32 @@ def solve_poses(
         if todo != DONE:
             spent = go_on(block, rows, starts, settings, q[i], desk, (spent, todo), work, looks)
         evaluations[i] = spent
+
+
+@inline
+def settle(block: Floats, rows: Ints | None, settings: Floats, target: Floats, q: Floats, desk: Desk, work: Work) -> int:
+    """``settle_pose`` in room that was made for it."""
+    arm, bounds, entries, _, _ = unpack(block)
+    task, guess, _, best, _ = laid_out(desk, bounds[0].shape[0])
+    if not read(target, q, entries, task, guess):
+        return REFUSED
+    for i in range(6):
+        task[12 + i], task[18 + i] = 0.0 if i < 3 or rows is None else np.inf, 1.0
+    task[24] = task[25] = 0.0
+    descent, most = (settings[0], settings[1], int(settings[2])), int(settings[2])
+    spent = descend_from(arm, task.reshape(1, 26), rows, bounds, guess, descent, most, np.inf, best, work)[0]
+    write_end(best, entries, q)
+    return spent
+
+
+@jit(f"i8(f8[::1], i8[:,::1]?, f8[::1], {POSE}, f8[::1])")
+def settle_pose(block: Floats, rows: Ints | None, settings: Floats, target: Floats, q: Floats) -> int:
+    """Descend from q (nq,) towards a target (4, 4) that cannot be met, as near as it gets; returns evaluations.
+
+    ``settings`` (3,) are damping, progress and evaluations.
+    """
+    S, n = sizes_of(block)
+    return settle(block, rows, settings, target, q, desk_for(n, S), workspace(n, rows, S))
 
 
 @jit("void(f8[:,:,::1], f8[:,::1], f8[:,::1])")

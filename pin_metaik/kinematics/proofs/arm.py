@@ -6,18 +6,19 @@ What a target leaves free becomes joints of its own at the tip: a position alone
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.paths import Paths, matrix_of
-from pin_metaik.kinematics.proofs.targets import exact_pose
 from pin_metaik.kinematics.reach import ROUNDING, links_of, tightened
 
 Floats = NDArray[np.float64]
+Free: TypeAlias = tuple[bool, bool, bool]  # which turns about the tip's axes x, y and z a target leaves free
 
+WHOLE: Free = (False, False, False)
 MEET = 1e-9  # m: a wrist is exact, or it is none
 APART = 1e-6  # least singular value at which three axes count as pointing different ways
 
@@ -41,6 +42,14 @@ class Path:
         links = [np.linalg.inv(matrix_of(row)) for row in [*self.joints[:, :12], self.tip]][::-1]
         rows = [np.append(_flat(link), -row[12:]) for link, row in zip(links[:-1], self.joints[::-1], strict=True)]
         return Path(np.array(rows), np.ascontiguousarray(self.wiring[::-1]), _flat(links[-1]))
+
+    def with_turn(self, first: int, axis: int) -> Path:
+        """The path with one more joint at the tip, about its axis x, y or z (0, 1, 2), with coordinate ``first``."""
+        turned = np.roll(np.eye(3), axis - 2, axis=0)  # a frame whose z is that axis
+        at_tip, back = np.eye(4), np.eye(4)
+        at_tip[:3, :3], back[:3, :3] = turned, turned.T
+        joint = np.append(_flat(matrix_of(self.tip) @ at_tip), [1.0, 0.0])
+        return Path(np.vstack([self.joints, joint]), np.vstack([self.wiring, [[first, 1]]]), _flat(back))
 
     def with_wrist(self, first: int) -> Path:
         """The path with three more joints at the tip, about its axes z, y and z, with coordinates from ``first`` on."""
@@ -94,8 +103,11 @@ class ProofArm:
 
     def target(self, pose: Floats, near: float, aligned: float) -> tuple[Floats, float, float]:
         """A pose (4, 4) and tolerances (m, rad) as ``cover`` takes them, with the rounding of its bounds."""
-        exact, skew = exact_pose(pose)
-        rotation, place = exact[:3, :3], exact[:3, 3]
+        from pin_metaik.kinematics.proofs.targets import exact_pose
+
+        exact = np.empty(12)
+        skew = exact_pose(pose, exact)
+        rotation, place = exact[:9].reshape(3, 3), exact[9:]
         near, aligned = (1.0 + skew) * near, aligned + 2.0 * skew
         if self.backwards:
             near += aligned * float(np.linalg.norm(place))
@@ -104,10 +116,11 @@ class ProofArm:
         return np.append(rotation.ravel(), place), near + aligned * self.reach + rounding, aligned + ROUNDING
 
 
-def proof_arm(paths: Paths, limits: Limits, tip: int, oriented: bool) -> ProofArm | None:
-    """The arm of tip number ``tip``, for whole poses or for positions; None, where its range has no bounds.
+def proof_arm(paths: Paths, limits: Limits, tip: int, free: Free) -> ProofArm | None:
+    """The arm of tip number ``tip`` for targets that leave some turns about the tip's axes free; None: no bounds.
 
-    That is so for slides without limits, and for angles without limits that other joints follow at a scale.
+    Two free axes count as three, which is more than the target allows, so that what is proved holds. There are no
+    bounds for slides without limits, and for angles without limits that other joints follow at a scale.
     """
     first, last = paths.ends[tip], paths.ends[tip + 1]
     path = Path(paths.joints[first:last], paths.wiring[first:last], paths.tips[tip])
@@ -116,9 +129,10 @@ def proof_arm(paths: Paths, limits: Limits, tip: int, oriented: bool) -> ProofAr
         return None
     lower, upper = box
     n = len(lower)
-    if not oriented:
-        path = path.with_wrist(n)
-        lower, upper = np.append(lower, [-np.pi] * 3), np.append(upper, [np.pi] * 3)
+    if any(free):
+        path = path.with_turn(n, free.index(True)) if sum(free) == 1 else path.with_wrist(n)
+        turns = len(path.joints) - (last - first)
+        lower, upper = np.append(lower, [-np.pi] * turns), np.append(upper, [np.pi] * turns)
     wrist, backwards = _wrist(path, lower, upper), False
     if wrist is None:
         turned = path.reversed()

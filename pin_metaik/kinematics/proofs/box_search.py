@@ -15,7 +15,6 @@ from pin_metaik.kinematics.proofs.box_balls import excluded_by_balls
 from pin_metaik.kinematics.proofs.box_linear import excluded_to_first_order
 from pin_metaik.kinematics.proofs.box_wrist import excluded_by_wrist
 
-DEPTH = 1024  # boxes that wait at most; a box of 8 coordinates that is halved to 1e-7 leaves some 250
 FIRST_ORDER = 3.0  # rad, sum of the half widths up to which the series is worth looking at
 
 ARM = "f8[:,::1], i8[:,::1], f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], i8[::1]"
@@ -32,7 +31,7 @@ def middle_joint(arm: BoxArm, half: Floats, last: int, total: float) -> int:
     return cut
 
 
-@jit(f"UniTuple(i8, 3)({ARM}, f8[::1], f8, f8, f8[:,::1], f8, i8, f8[:,::1])")
+@jit(f"UniTuple(i8, 3)({ARM}, f8[::1], f8, f8, f8[:,::1], i8, f8, i8, f8[:,::1])")
 def cover(
     joints: Floats,
     wiring: Ints,
@@ -45,12 +44,13 @@ def cover(
     target: Floats,
     near: float,
     aligned: float,
-    begin: Floats,
+    waiting: Floats,
+    count: int,
     least: float,
     boxes: int,
     leaves: Floats,
 ) -> tuple[int, int, int]:
-    """Exclude what can be excluded of some boxes of configurations: boxes looked at, leaves, and 1 if all is done.
+    """Exclude what can be excluded of some boxes of configurations: boxes looked at, leaves, and boxes still waiting.
 
     Args:
         joints: The arm's arrays, down to ``wrist``; see ``BoxArm``.
@@ -64,36 +64,34 @@ def cover(
         target: (12,) pose of the tip.
         near: How far (m) from it the tip may be.
         aligned: By how much (rad) it may be turned.
-        begin: (b, 2 n) centres and half widths of the boxes to begin with.
+        waiting: (DEPTH, 2 n) centres and half widths; its first rows are the boxes to begin with, and in the end those
+            that are still to be looked at: another call goes on with them.
+        count: How many they are.
         least: Half width (rad or m) below which a box is kept instead of split.
         boxes: How many to look at, at most.
         leaves: (l, 2 n) gets centres and half widths of the boxes that are kept. When it is full the search stops.
 
     Returns:
-        With the third number 1 and no leaf it is proved that nothing in the boxes reaches the target; with leaves, that
-        nothing outside of them does.
+        With none waiting and no leaf it is proved that nothing in the boxes reaches the target; with leaves, that nothing
+        outside of them does.
     """
     arm = BoxArm(joints, wiring, knots, tip, lower, upper, reach, wrist)
     n, S = lower.shape[0], joints.shape[0]
     has_wrist = wrist[0] == 1
     last = S - 3 if has_wrist else S  # joints that are split
-    centres, widths = np.empty((DEPTH, n)), np.empty((DEPTH, n))
     centre, width, start, weights, way = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     rows, columns, splits = np.empty((S, 6)), np.empty((n, 6)), np.zeros(n, np.int64)
     laid = laid_for(S)
     for k in range(last):
         splits[wiring[k, 0]] = 1
-    waiting, looked, kept = min(begin.shape[0], DEPTH - 1), 0, 0
-    for b in range(waiting):
-        for c in range(n):
-            centres[b, c], widths[b, c] = begin[b, c], begin[b, n + c]
-    while waiting > 0:
-        if looked >= boxes or kept == leaves.shape[0] or waiting + 1 > DEPTH:
-            return looked, kept, 0
+    looked = kept = 0
+    while count > 0:
+        if looked >= boxes or kept == leaves.shape[0] or count + 1 > waiting.shape[0]:
+            break
         looked += 1
-        waiting -= 1
+        count -= 1
         for c in range(n):
-            centre[c], width[c] = centres[waiting, c], widths[waiting, c]
+            centre[c], width[c] = waiting[count, c], waiting[count, n + c]
             start[c] = centre[c]
         lay(arm, target, centre, width, laid)
         if excluded_by_balls(arm, laid, near, aligned, weights):
@@ -119,8 +117,9 @@ def cover(
             continue
         for side in range(2):
             for c in range(n):
-                centres[waiting, c], widths[waiting, c] = centre[c], width[c]
-            widths[waiting, at] = 0.5 * width[at]
-            centres[waiting, at] += widths[waiting, at] if side == 1 else -widths[waiting, at]
-            waiting += 1
-    return looked, kept, 1
+                waiting[count, c], waiting[count, n + c] = centre[c], width[c]
+            half = 0.5 * width[at]
+            waiting[count, n + at] = half
+            waiting[count, at] += half if side == 1 else -half
+            count += 1
+    return looked, kept, count

@@ -22,6 +22,7 @@ from pin_metaik.kinematics.proofs.balls import (
     sum_of,
     turned_ball,
 )
+from pin_metaik.kinematics.proofs.targets import exactly
 from pin_metaik.kinematics.reach import ROUNDING
 
 POSSIBLE, SHOULDER, WRIST, ELBOW, LIMIT = 0, 1, 2, 3, 4  # what is wrong with a branch
@@ -130,11 +131,12 @@ def possible_branches(
 
 
 @jit(
-    "i8(f8[:,::1], i8[:,::1], f8[::1], f8[::1], i8[::1], Array(f8, 2, 'A', readonly=True), f8, f8,"
+    "i8(f8[:,::1], f8[::1], i8[:,::1], f8[::1], f8[::1], i8[::1], Array(f8, 2, 'A', readonly=True), f8, f8,"
     " f8[:,::1], f8[:,::1], f8[:,::1])"
 )
 def judge_pose(
     form: Floats,
+    deviation: Floats,
     wiring: Ints,
     lower: Floats,
     upper: Floats,
@@ -150,18 +152,19 @@ def judge_pose(
 
     Args:
         form: (16, 3) of ``closed_form``.
+        deviation: (2,) how far (m) and by how much turned (rad) the arm may be from its closed form.
         wiring: (6, 2) the coordinate of each joint, and that it turns.
         lower: (6,) rad, limits of the coordinates.
         upper: (6,) rad.
         winds: (6,) whether a coordinate has whole turns to choose from; not looked at.
         target: (4, 4) world pose.
-        near: How far (m) the tip may be from it, and the arm from its closed form.
-        aligned: By how much (rad) it may be turned, and the arm from its closed form.
+        near: How far (m) the tip may be from it.
+        aligned: By how much (rad) it may be turned.
         angles: (8, 6) gets the angle of each joint on each branch that is real, rad.
         radii: (8, 6) gets how far the true angles may be from them, rad.
         faults: (8, 3) gets what is wrong with a branch, the coordinate beyond its limit or -1, and by how much (m, rad,
             or for the wrist a sine).
     """
-    return possible_branches(
-        form, wiring, (lower, upper, winds), numbers_of(target), near, aligned, angles, radii, faults
-    )
+    pose, skew = exactly(numbers_of(target))
+    near, aligned = (1.0 + skew) * near + deviation[0], aligned + 2.0 * skew + deviation[1]
+    return possible_branches(form, wiring, (lower, upper, winds), pose, near, aligned, angles, radii, faults)

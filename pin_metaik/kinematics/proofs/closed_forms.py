@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.paths import Paths
 from pin_metaik.kinematics.proofs.deviation import deviation, ideal
-from pin_metaik.kinematics.proofs.targets import exact_pose
 from pin_metaik.kinematics.reach import ROUNDING
 
 Floats = NDArray[np.float64]
@@ -43,6 +42,20 @@ class Branches:
         """Whether it is proved that no configuration inside the limits reaches the pose."""
         return not len(self.possible)
 
+    def nearest(self, limits: Limits, columns: NDArray[np.int64]) -> Floats | None:
+        """Coordinates (6,) of the branch least beyond a limit, brought inside the limits; None, if none is real.
+
+        Args:
+            limits: Of the coordinates.
+            columns: (6,) the coordinate of each joint.
+        """
+        beyond = self.faults[:, 0] == LIMIT
+        if not beyond.any():
+            return None
+        x = np.empty(len(columns))
+        x[columns] = self.angles[np.argmin(np.where(beyond, self.faults[:, 2], np.inf))]
+        return limits.clip(limits.nearest_turns(x, x))
+
     def why(self, limits: Limits, columns: NDArray[np.int64]) -> str:
         """What keeps the arm from the pose, on the branch that comes nearest to it.
 
@@ -52,7 +65,7 @@ class Branches:
         """
         real = self.faults[:, 0] == LIMIT
         if real.any():
-            number = int(np.flatnonzero(real)[np.argmin(self.faults[real, 2])])
+            number = int(np.argmin(np.where(real, self.faults[:, 2], np.inf)))
             _, column, over = self.faults[number]
             c = int(column)
             (joint,) = np.flatnonzero(columns == c)
@@ -78,15 +91,13 @@ class ClosedFormProof:
         form: (16, 3) the closed form, its parallel axes parallel to the last digit.
         wiring: (6, 2) of the arm's joints.
         limits: Of its coordinates.
-        near: How far (m) the arm's tip may be from the closed form's.
-        aligned: By how much (rad) it may be turned.
+        deviation: (2,) how far (m) the arm's tip may be from the closed form's, and by how much turned (rad).
     """
 
     form: Floats
     wiring: NDArray[np.int64]
     limits: Limits
-    near: float
-    aligned: float
+    deviation: Floats
 
     @staticmethod
     def of(form: Floats, paths: Paths, limits: Limits) -> ClosedFormProof:
@@ -94,16 +105,16 @@ class ClosedFormProof:
         exact = ideal(form)
         near, aligned = deviation(paths, exact)
         size = float(np.linalg.norm(exact[6:12], axis=1).sum())
-        return ClosedFormProof(exact, paths.wiring, limits, near + ROUNDING * (1.0 + size), aligned + ROUNDING)
+        off = np.array([near + ROUNDING * (1.0 + size), aligned + ROUNDING])
+        return ClosedFormProof(exact, paths.wiring, limits, off)
 
     def judge(self, pose: Floats, near: float, aligned: float) -> Branches:
         """Which branches may hold a configuration whose tip is within ``near`` (m) and ``aligned`` (rad) of a pose."""
         from pin_metaik.kinematics.proofs.branch_balls import judge_pose
 
-        exact, skew = exact_pose(pose)
         angles, radii, faults = np.zeros((BRANCHES, 6)), np.zeros((BRANCHES, 6)), np.empty((BRANCHES, 3))
-        near, aligned = (1.0 + skew) * near + self.near, aligned + 2.0 * skew + self.aligned
-        judge_pose(self.form, self.wiring, *self.limits.arrays, exact, near, aligned, angles, radii, faults)
+        how = self.form, self.deviation, self.wiring, *self.limits.arrays
+        judge_pose(*how, pose, near, aligned, angles, radii, faults)
         return Branches(angles, radii, faults)
 
 

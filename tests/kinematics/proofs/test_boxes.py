@@ -5,8 +5,7 @@ import pinocchio as pin
 import pytest
 
 import pin_metaik as mik
-from pin_metaik.kinematics.proofs.arm import Path, ProofArm, proof_arm
-from pin_metaik.kinematics.proofs.box_search import cover
+from pin_metaik.kinematics.proofs.arm import WHOLE, Path, ProofArm, proof_arm
 
 
 def chain_of(robot: str) -> mik.Chain:
@@ -14,8 +13,8 @@ def chain_of(robot: str) -> mik.Chain:
     return mik.Chain(loaded.model, loaded.frame)
 
 
-def arm_of(chain: mik.Chain, oriented: bool = True) -> ProofArm:
-    arm = proof_arm(chain.paths, chain.limits, 0, oriented)
+def arm_of(chain: mik.Chain) -> ProofArm:
+    arm = proof_arm(chain.paths, chain.limits, 0, WHOLE)
     assert arm is not None
     return arm
 
@@ -27,15 +26,15 @@ def path_of(chain: mik.Chain) -> Path:
 @pytest.mark.parametrize("robot", ["talos_arm", "panda"])
 def test_what_is_not_solved_is_proved_and_nothing_is_both(robot: str) -> None:
     chain = chain_of(robot)
-    arm, rng = arm_of(chain), np.random.default_rng(7)
+    rng = np.random.default_rng(7)
     poses = chain.poses(chain.box.sample(rng, 60))[:, 0]
     for pose in poses:
         pose[:3, :3] = pin.Quaternion(*rng.normal(size=4)).normalized().matrix()
     solved = mik.solve_ik_batch(chain, poses, solver=mik.IKSolver(budget=mik.Budget(evaluations=600))).success
-    leaves = np.empty((1, arm.whole.shape[1]))
     for pose, found in zip(poses, solved, strict=True):
-        _, kept, done = cover(*arm.arrays, *arm.target(pose, 1e-5, 1e-5), arm.whole, 1e-3, 20_000, leaves)
-        assert bool(done and not kept) != found
+        boxes = chain.boxes(0, pose, 1e-5, 1e-5, least=1e-3)
+        boxes.look(20_000)
+        assert boxes.excluded != found
 
 
 def test_a_position_that_limits_forbid_is_proved_out_of_reach() -> None:
@@ -48,14 +47,13 @@ def test_a_position_that_limits_forbid_is_proved_out_of_reach() -> None:
         joint = model.addJoint(joint, pin.JointModelRZ(), way, f"joint_{i}", ten, ten, -most, most)
     model.addFrame(pin.Frame("tip", joint, 0, pin.SE3(np.eye(3), np.array([0.4, 0.0, 0.0])), pin.FrameType.OP_FRAME))
     chain = mik.Chain(model, "tip")
-    arm = arm_of(chain, oriented=False)
-    leaves = np.empty((4, arm.whole.shape[1]))
 
     def proved(distance: float) -> bool:
         pose = np.eye(4)
         pose[0, 3] = distance
-        _, kept, done = cover(*arm.arrays, *arm.target(pose, 1e-5, 0.0), arm.whole, 1e-3, 5_000, leaves)
-        return bool(done and not kept)
+        boxes = chain.boxes(0, pose, 1e-5, 0.0, (True, True, True), least=1e-3)
+        boxes.look(5_000)
+        return boxes.excluded
 
     nearest = np.linalg.norm(chain.poses(np.array([0.0, 0.3, 0.3]))[0, 0, :3, 3])
     assert proved(0.9 * nearest) and proved(1.01 * 1.2)
@@ -66,15 +64,16 @@ def test_a_position_that_limits_forbid_is_proved_out_of_reach() -> None:
 def test_every_solution_lies_in_a_leaf_of_the_cover(robot: str) -> None:
     chain = chain_of(robot)
     arm, rng = arm_of(chain), np.random.default_rng(1)
-    n, leaves = chain.n, np.empty((4_000, arm.whole.shape[1]))
+    n = chain.n
     split = n - 3 if arm.arrays[7][0] else n  # the wrist's joints are not split
     for x in chain.box.sample(rng, 3):
         pose = chain.poses(x)[0, 0]
-        _, kept, done = cover(*arm.arrays, *arm.target(pose, 1e-6, 1e-6), arm.whole, 0.03, 200_000, leaves)
-        assert done and 0 < kept < len(leaves)
+        boxes = chain.boxes(0, pose, 1e-6, 1e-6, least=0.03)
+        leaves = boxes.look(200_000, 4_000)
+        assert boxes.done and not boxes.excluded
         for solution in chain.x(mik.solve_ik_all(chain, pose).q):
-            off = np.abs(leaves[:kept, :split] - solution[:split])
-            assert (off <= leaves[:kept, n : n + split] + 1e-6).all(axis=1).any()
+            off = np.abs(leaves[:, :split] - solution[:split])
+            assert (off <= leaves[:, n : n + split] + 1e-6).all(axis=1).any()
 
 
 def test_a_path_and_its_reverse_are_inverse_to_each_other() -> None:
@@ -107,4 +106,4 @@ def test_slides_without_limits_cannot_be_covered() -> None:
     joint = model.addJoint(0, pin.JointModelPX(), pin.SE3.Identity(), "slide")
     model.addFrame(pin.Frame("tip", joint, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME))
     chain = mik.Chain(model, "tip")
-    assert proof_arm(chain.paths, chain.limits, 0, oriented=True) is None
+    assert proof_arm(chain.paths, chain.limits, 0, WHOLE) is None

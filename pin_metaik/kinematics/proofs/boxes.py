@@ -1,0 +1,64 @@
+"""Boxes of an arm's configurations, excluded in turns: what is left of them, and what may hold a solution."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pin_metaik.kinematics.proofs.arm import Floats, ProofArm
+
+TINY = 1e-7  # rad or m, half width below which a box is a place to descend from
+DEPTH = 1024  # boxes that wait at most; a box of 8 coordinates that is halved to TINY leaves some 250
+
+
+class Boxes:
+    """What is still to be looked at of all configurations of an arm, for one target.
+
+    Attributes:
+        arm: The arm.
+        looked: Boxes looked at so far.
+        clean: Whether none was kept so far.
+    """
+
+    def __init__(self, arm: ProofArm, pose: Floats, near: float, aligned: float, least: float = TINY) -> None:
+        """Begin with all configurations inside the limits.
+
+        Args:
+            arm: The arm.
+            pose: (4, 4) world pose of its tip.
+            near: How far (m) from it the tip may be.
+            aligned: By how much (rad) it may be turned.
+            least: Half width (rad or m) below which a box is kept instead of split.
+        """
+        self.arm = arm
+        self.looked = 0
+        self.clean = True
+        self._target = arm.target(pose, near, aligned)
+        self._least = least
+        self._waiting = np.empty((DEPTH, arm.whole.shape[1]))
+        self._waiting[0] = arm.whole[0]
+        self._count = 1
+
+    @property
+    def done(self) -> bool:
+        """Whether no box is left to look at: what was not kept is proved to hold no solution."""
+        return self._count == 0
+
+    @property
+    def excluded(self) -> bool:
+        """Whether it is proved that no configuration inside the limits reaches the target."""
+        return self.done and self.clean
+
+    def look(self, boxes: int, leaves: int = 1) -> Floats:
+        """Look at no more than so many boxes; those that are kept (k, 2 m), centres and half widths, at most ``leaves``.
+
+        The last coordinates, beyond the chain's own, are those of the free joints at the tip.
+        """
+        from pin_metaik.kinematics.proofs.box_search import cover
+
+        kept = np.empty((leaves, self._waiting.shape[1]))
+        looked, count, self._count = cover(
+            *self.arm.arrays, *self._target, self._waiting, self._count, self._least, boxes, kept
+        )
+        self.looked += looked
+        self.clean = self.clean and count == 0
+        return kept[:count]
