@@ -3,6 +3,7 @@
 from pin_metaik.ik.batch import IKBatch, solve_ik_batch
 from pin_metaik.ik.path import IKPath, solve_ik_path
 from pin_metaik.ik.problem import IKProblem, Verdict
+from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.refine import DLS, REFINERS, Refinement, Refiner
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solutions import IKSolutions, solve_ik_all
@@ -20,6 +21,7 @@ __all__ = [
     "IKSolutions",
     "IKSolver",
     "IKStatus",
+    "Proof",
     "Refinement",
     "Refiner",
     "Target",

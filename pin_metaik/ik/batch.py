@@ -29,8 +29,6 @@ from pin_metaik.randomness import Rng
 
 Rows: TypeAlias = slice | NDArray[np.int64]
 
-QUICK = 1_000  # evaluations of a target in the compiled loop, which hears no Ctrl-C; 99.97 % are solved by then
-
 
 @dataclass(frozen=True, eq=False)
 class IKBatch:
@@ -40,6 +38,7 @@ class IKBatch:
         q: (k, nq) configurations, inside the limits also where not solved.
         success: (k,) whether each target is met, by Pinocchio.
         status: (k,) why each search ended, as ``IKStatus``.
+        proof: (k,) what proves that a target is out of reach, as ``Proof``; None where nothing does.
         position_error: (k,) m, by Pinocchio.
         orientation_error: (k,) rad, by Pinocchio.
         evaluations: (k,) forward kinematics computed.
@@ -54,6 +53,7 @@ class IKBatch:
     q: NDArray[np.float64]
     success: NDArray[np.bool_]
     status: NDArray[np.object_]
+    proof: NDArray[np.object_]
     position_error: NDArray[np.float64]
     orientation_error: NDArray[np.float64]
     evaluations: NDArray[np.int64]
@@ -82,6 +82,7 @@ class IKBatch:
             self.targets[i],
             world=self.world,
             contacts=self.contacts.get(i % len(self), ()),
+            proof=self.proof[i],
         )
 
     def __iter__(self) -> Iterator[IKResult]:
@@ -127,7 +128,7 @@ def solve_ik_batch(
     k = len(asked)
     bases = _bases(chain, q0, k)
     batch = IKBatch(
-        bases.copy(), np.zeros(k, bool), np.empty(k, object), np.zeros(k), np.zeros(k), np.zeros(k, int), 0.0,
+        bases.copy(), np.zeros(k, bool), np.empty(k, object), np.full(k, None), np.zeros(k), np.zeros(k), np.zeros(k, int), 0.0,
         chain, asked, world,
     )  # fmt: skip
 
@@ -138,7 +139,7 @@ def solve_ik_batch(
             raise InvalidTarget(f"target {i}: {error}") from None
         batch.q[i], batch.success[i], batch.status[i] = result.q, result.success, result.status
         batch.position_error[i], batch.orientation_error[i] = result.position_error, result.orientation_error
-        batch.evaluations[i] = result.evaluations
+        batch.evaluations[i], batch.proof[i] = result.evaluations, result.proof
         if result.contacts:
             batch.contacts[i] = result.contacts
 
@@ -148,7 +149,7 @@ def solve_ik_batch(
     if array is not None and settings is not None and k:
         poses, starts = _as_poses(array), drawn(chain, seed, 0, LANE)
         aligned = math.inf if array.ndim == 2 else settings[5]
-        settings = np.array([*settings[:3], min(settings[3], QUICK), settings[4], aligned])
+        settings = np.array([*settings[:5], aligned, 0.0])  # where a closed form has no branch, ``alone`` decides first
 
         def together(part: Rows) -> None:
             q, evaluations, goals = batch.q[part], batch.evaluations[part], poses[part]
@@ -156,7 +157,7 @@ def solve_ik_batch(
             lane = here.pose_lane if array.ndim == 3 else here.position_lane
             chain.kernels.solve_poses(lane.block, lane.rows, starts, settings, goals, q, evaluations)
             batch.q[part], batch.evaluations[part] = q, evaluations
-            _judge(batch, goals, settings[4:], part)
+            _judge(batch, goals, settings[4:6], part)
 
         share_out(together, _parts(chain, bases, workers), workers)
         left = np.flatnonzero(~batch.success).tolist()

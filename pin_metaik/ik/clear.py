@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.collision import CollisionWorld
+from pin_metaik.ik.gather import VAIN, VAIN_EACH, gather
 from pin_metaik.ik.ledger import Ledger
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.push import Push
-from pin_metaik.ik.solutions import VAIN, VAIN_EACH, gather
 from pin_metaik.ik.starts import BATCH, drawn
 from pin_metaik.optimize import Metaheuristic, minimize
 from pin_metaik.randomness import DEFAULT_SEED, Rng, as_generator

@@ -78,7 +78,7 @@ def solve_fast(
                 branches = chain.form_proof.judge(matrix, near, aligned)
                 if branches.proved:
                     proof = Proof.CLOSED_FORM
-                    nearest = branches.nearest(chain.limits, chain.paths.wiring[:, 0])
+                    nearest = branches.nearest()
                     if nearest is not None:
                         chain.coordinates.write(nearest, q)
         if todo != DONE and proof is None:

@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import array, checked, shown
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidSetting, InvalidTarget
+from pin_metaik.ik.gather import gather
 from pin_metaik.ik.problem import IKProblem
-from pin_metaik.ik.solutions import gather
 from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain

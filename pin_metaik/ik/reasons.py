@@ -8,23 +8,21 @@ import numpy as np
 
 from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.ik.problem import IKProblem
-from pin_metaik.ik.proof import Proof
 from pin_metaik.kinematics import Chain
 
 SHOWN = 3  # contacts in a sentence
 
 
-def out_of_reach(problem: IKProblem, proof: Proof | None, position_error: float, orientation_error: float) -> str:
-    """What is proved to be out of reach, by which means, and how near (m, rad) the nearest configuration found is."""
-    if proof is Proof.LIMITS or problem.limits.rigid:
+def out_of_reach(problem: IKProblem, nearest: str) -> str:
+    """What is proved to be out of reach, and by which means; where no bound says how far, ``nearest`` does."""
+    if problem.limits.rigid:
         return f"out of reach: {cannot_move(problem)}"
     if problem.gap > 0.0:
         return too_far(problem)
-    nearest = f"the nearest found is {position_error:.2g} m and {orientation_error:.2g} rad away"
     formed = problem.form_branches
     if formed is not None and formed.proved:
-        return f"out of reach: {formed.why(problem.limits, problem.chain.paths.wiring[:, 0])}; {nearest}"
-    return f"out of reach: proved by excluding every box of configurations inside the limits; {nearest}"
+        return f"out of reach: {formed.why()}; {nearest}"
+    return f"out of reach: every box of configurations inside the limits is excluded; {nearest}"
 
 
 def too_far(problem: IKProblem) -> str:

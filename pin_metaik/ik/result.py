@@ -118,19 +118,24 @@ class IKResult:
             case IKStatus.SOLVED:
                 return "within the tolerances and inside the limits"
             case IKStatus.UNREACHABLE:
-                return out_of_reach(self.problem, self.proof, self.position_error, self.orientation_error)
+                return out_of_reach(self.problem, self._nearest)
             case IKStatus.OUT_OF_TOLERANCE:
-                still, free = cannot_move(self.problem), [n for n in self.binding if n not in self.chain.limits.stuck]
-                stuck = (f"; at a limit: {', '.join(free)}" if free else "") + (f"; {still}" if still else "")
-                asked = len(self.problem.rows)
-                lost = f"; {asked - self.rank} of {asked} directions lost there" if self.rank < asked else ""
-                spent = f"nothing close enough found in {self.evaluations} evaluations"
-                return f"{spent}; this is the nearest{stuck}{lost}"
+                return f"nothing close enough found in {self.evaluations} evaluations; {self._nearest}"
             case IKStatus.IN_COLLISION:
                 shown = collisions(self.chain, self.world, self.contacts)
                 return f"met only in collision; the least deep found: {shown}"
             case IKStatus.STOPPED:
                 return "time was up before it was solved; this is the best so far"
+
+    @property
+    def _nearest(self) -> str:
+        """How far ``q`` is from the target, and what keeps it from it."""
+        still, free = cannot_move(self.problem), [n for n in self.binding if n not in self.chain.limits.stuck]
+        stuck = (f"; at a limit: {', '.join(free)}" if free else "") + (f"; {still}" if still else "")
+        asked = len(self.problem.rows)
+        lost = f"; {asked - self.rank} of {asked} directions lost there" if self.rank < asked else ""
+        away = f"{self.position_error:.3g} m and {self.orientation_error:.3g} rad away"
+        return f"the nearest is {away}{stuck}{lost}"
 
     def verify(self) -> bool:
         """Judge ``q`` again by Pinocchio and the limits, and by coal in the world as it is now.

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import checked, instance
 from pin_metaik.errors import InvalidBudget, InvalidSetting, UnknownName
+from pin_metaik.ik.collect import collect
 from pin_metaik.ik.exclude import STAGES, Exclusion
 from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.nullspace import slide
@@ -24,7 +25,6 @@ from pin_metaik.ik.refine import DLS, Refinement, Refiner, make_refiner
 from pin_metaik.ik.refine.dls import PROGRESS
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.select import SELECT
-from pin_metaik.ik.solutions import collect
 from pin_metaik.ik.starts import start_batches
 from pin_metaik.ik.target import DEFAULT_TOLERANCE
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize

@@ -297,7 +297,15 @@ class Chain:
         return ClosedFormProof.of(self.form, self.paths, self.limits) if len(self.form) else None
 
     def boxes(
-        self, tip: int, pose: NDArray[np.float64], near: float, aligned: float, free: Free = WHOLE, least: float = TINY
+        self,
+        tip: int,
+        pose: NDArray[np.float64],
+        near: float,
+        aligned: float,
+        free: Free = WHOLE,
+        *,
+        least: float = TINY,
+        split: bool = False,
     ) -> Boxes | None:
         """All configurations inside the limits, to be excluded for a target; None, where they have no bounds.
 
@@ -308,13 +316,15 @@ class Chain:
             aligned: By how much (rad) it may be turned about axes that are not free.
             free: Which turns about the frame's own axes x, y and z are free.
             least: Half width (rad or m) below which a box is kept instead of split.
+            split: Whether the joints of a wrist are split, too; without, only the others of what is kept are short.
         """
         if self._moves is not None:
-            return self._original.boxes(tip, np.linalg.inv(self._moves[tip]) @ pose, near, aligned, free, least)
+            moved = np.linalg.inv(self._moves[tip]) @ pose
+            return self._original.boxes(tip, moved, near, aligned, free, least=least, split=split)
         if (tip, free) not in self._proof_arms:
             self._proof_arms[tip, free] = proof_arm(self.paths, self.limits, tip, free)
         arm = self._proof_arms[tip, free]
-        return None if arm is None else Boxes(arm, pose, near, aligned, least)
+        return None if arm is None else Boxes(arm.split if split else arm, pose, near, aligned, least)
 
     def branches(self, pose: NDArray[np.float64], x0: NDArray[np.float64]) -> NDArray[np.float64]:
         """Coordinates (b, n) that an arm's closed form has for a pose (4, 4), the branch that x0 (n,) is on first.

@@ -154,7 +154,9 @@ def solve_poses(
 
 
 @inline
-def settle(block: Floats, rows: Ints | None, settings: Floats, target: Floats, q: Floats, desk: Desk, work: Work) -> int:
+def settle(
+    block: Floats, rows: Ints | None, settings: Floats, target: Floats, q: Floats, desk: Desk, work: Work
+) -> int:
     """``settle_pose`` in room that was made for it."""
     arm, bounds, entries, _, _ = unpack(block)
     task, guess, _, best, _ = laid_out(desk, bounds[0].shape[0])

@@ -5,7 +5,7 @@ What a target leaves free becomes joints of its own at the tip: a position alone
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -95,6 +95,11 @@ class ProofArm:
         """(1, 2 m) the box of all configurations inside the limits, as ``cover`` begins with it."""
         lower, upper = self.arrays[4], self.arrays[5]
         return np.concatenate([0.5 * (lower + upper), 0.5 * (upper - lower)])[None]
+
+    @property
+    def split(self) -> ProofArm:
+        """The same arm, but the joints of a wrist are split, too, so that what is kept is small in every coordinate."""
+        return replace(self, arrays=(*self.arrays[:-1], 2 * self.arrays[-1]))
 
     @property
     def reach(self) -> float:

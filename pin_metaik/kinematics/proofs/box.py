@@ -32,7 +32,8 @@ class BoxArm(NamedTuple):
         lower: (n,) limits of the coordinates, finite, rad or m.
         upper: (n,).
         reach: (1,) greatest distance of any point from the tip and from each other, m.
-        wrist: (1,) whether the last three axes meet, each with a coordinate of its own; then these are never split.
+        wrist: (1,) 1 if the last three axes meet, each with a coordinate of its own; then these are never split, or, if
+            it is 2, once all others are short.
     """
 
     joints: Floats

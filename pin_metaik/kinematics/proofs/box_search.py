@@ -72,12 +72,12 @@ def cover(
         leaves: (l, 2 n) gets centres and half widths of the boxes that are kept. When it is full the search stops.
 
     Returns:
-        With none waiting and no leaf it is proved that nothing in the boxes reaches the target; with leaves, that nothing
-        outside of them does.
+        With none waiting and no leaf it is proved that nothing in the boxes reaches the target; with leaves, that
+        nothing outside of them does.
     """
     arm = BoxArm(joints, wiring, knots, tip, lower, upper, reach, wrist)
     n, S = lower.shape[0], joints.shape[0]
-    has_wrist = wrist[0] == 1
+    has_wrist = wrist[0] > 0
     last = S - 3 if has_wrist else S  # joints that are split
     centre, width, start, weights, way = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     rows, columns, splits = np.empty((S, 6)), np.empty((n, 6)), np.zeros(n, np.int64)
@@ -96,7 +96,7 @@ def cover(
         lay(arm, target, centre, width, laid)
         if excluded_by_balls(arm, laid, near, aligned, weights):
             continue
-        if has_wrist and excluded_by_wrist(arm, laid, centre, aligned, start):
+        if has_wrist and excluded_by_wrist(arm, laid, centre, width, aligned, start):
             continue
         total = 0.0
         for k in range(last):
@@ -110,9 +110,14 @@ def cover(
             wide = splits[c] == 1 and width[c] > least
             if wide and (at < 0 or weights[c] > weights[at]):
                 at = c
+        if at < 0 and wrist[0] == 2:
+            for s in range(last, S):
+                c = wiring[s, 0]
+                if width[c] > least and (at < 0 or width[c] > width[at]):
+                    at = c
         if at < 0:
             for c in range(n):
-                leaves[kept, c], leaves[kept, n + c] = start[c], width[c]
+                leaves[kept, c], leaves[kept, n + c] = centre[c] if wrist[0] == 2 else start[c], width[c]
             kept += 1
             continue
         for side in range(2):

@@ -24,8 +24,8 @@ from pin_metaik.kinematics.reach import ROUNDING
 
 
 @shared
-def excluded_by_wrist(arm: BoxArm, laid: Laid, centre: Floats, aligned: float, start: Floats) -> bool:
-    """Whether no turns of the wrist inside the limits come within ``aligned`` (rad) of the target's orientation.
+def excluded_by_wrist(arm: BoxArm, laid: Laid, centre: Floats, width: Floats, aligned: float, start: Floats) -> bool:
+    """Whether no turns of the wrist inside the box come within ``aligned`` (rad) of the target's orientation.
 
     If some may, ``start`` (n,) gets the wrist's coordinates there.
     """
@@ -57,19 +57,19 @@ def excluded_by_wrist(arm: BoxArm, laid: Laid, centre: Floats, aligned: float, s
         t1 = arc_from_to(k1, turned_ball(k2, t2, (k3, 0.0)), (goal, off))
         back = turned_ball(k2, reverse(t2), turned_ball(k1, reverse(t1), (goal_side, off_side)))
         t3 = arc_from_to(k3, (side, 0.0), back)
-        fits = turns(arm, centre, w, t1, start) and turns(arm, centre, w + 1, t2, start)
-        if fits and turns(arm, centre, w + 2, t3, start):
+        fits = turns(arm, centre, width, w, t1, start) and turns(arm, centre, width, w + 1, t2, start)
+        if fits and turns(arm, centre, width, w + 2, t3, start):
             return False
     return True
 
 
 @inline
-def turns(arm: BoxArm, centre: Floats, s: int, arc: Arc, start: Floats) -> bool:
-    """Whether joint s may turn by an arc from where it is at the centre; its coordinate there goes into ``start``."""
+def turns(arm: BoxArm, centre: Floats, width: Floats, s: int, arc: Arc, start: Floats) -> bool:
+    """Whether joint s may turn by an arc from the centre within the box; its coordinate there goes into ``start``."""
     c, scale, shift = arm.wiring[s, 0], arm.joints[s, 12], arm.joints[s, 13]
-    first, last = scale * arm.lower[c] + shift, scale * arm.upper[c] + shift
-    lower, upper = min(first, last), max(first, last)
-    at = scale * centre[c] + shift + angle(arc[0])
+    middle, half = scale * centre[c] + shift, abs(scale) * width[c]
+    lower, upper = middle - half, middle + half
+    at = middle + angle(arc[0])
     if beyond(at, arc[1], lower, upper) > 0.0:
         return False
     turn = 2.0 * math.pi

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 
 from pin_metaik.kinematics.proofs.arm import Floats, ProofArm
@@ -19,7 +21,14 @@ class Boxes:
         clean: Whether none was kept so far.
     """
 
-    def __init__(self, arm: ProofArm, pose: Floats, near: float, aligned: float, least: float = TINY) -> None:
+    def __init__(
+        self,
+        arm: ProofArm,
+        pose: Floats,
+        near: float,
+        aligned: float,
+        least: float = TINY,
+    ) -> None:
         """Begin with all configurations inside the limits.
 
         Args:
@@ -37,6 +46,14 @@ class Boxes:
         self._waiting = np.empty((DEPTH, arm.whole.shape[1]))
         self._waiting[0] = arm.whole[0]
         self._count = 1
+
+    def within(self, box: Floats, least: float) -> Boxes:
+        """The same for the configurations of one box (2 m,) that was kept, down to smaller ones."""
+        part = copy(self)
+        part.looked, part.clean, part._least = 0, True, least
+        part._waiting = self._waiting.copy()
+        part._waiting[0], part._count = box, 1
+        return part
 
     @property
     def done(self) -> bool:

@@ -22,15 +22,19 @@ class Branches:
     """What a closed form says of the configurations that reach a pose within its tolerances.
 
     Attributes:
-        angles: (8, 6) angle of each joint on each branch that is real, rad.
-        radii: (8, 6) how far the true angles may be from them, rad.
+        angles: (8, 6) coordinates of each branch that is real, rad.
+        radii: (8, 6) how far the true ones may be from them, rad.
         faults: (8, 3) what is wrong with a branch, the coordinate beyond its limit or -1, and by how much: m, rad, or
             for the wrist the sine of an angle.
+        columns: (6,) the coordinate of each joint, from the base on.
+        limits: Of the coordinates.
     """
 
     angles: Floats
     radii: Floats
     faults: Floats
+    columns: NDArray[np.int64]
+    limits: Limits
 
     @property
     def possible(self) -> NDArray[np.int64]:
@@ -42,45 +46,39 @@ class Branches:
         """Whether it is proved that no configuration inside the limits reaches the pose."""
         return not len(self.possible)
 
-    def nearest(self, limits: Limits, columns: NDArray[np.int64]) -> Floats | None:
-        """Coordinates (6,) of the branch least beyond a limit, brought inside the limits; None, if none is real.
+    @property
+    def boxes(self) -> Floats:
+        """(b, 12) coordinates of the branches that may hold a configuration, and how far the true ones may be off."""
+        return np.hstack([self.angles, self.radii])[self.possible]
 
-        Args:
-            limits: Of the coordinates.
-            columns: (6,) the coordinate of each joint.
-        """
+    def nearest(self) -> Floats | None:
+        """Coordinates (6,) of the branch least beyond a limit, brought inside the limits; None, if none is real."""
         beyond = self.faults[:, 0] == LIMIT
         if not beyond.any():
             return None
-        x = np.empty(len(columns))
-        x[columns] = self.angles[np.argmin(np.where(beyond, self.faults[:, 2], np.inf))]
-        return limits.clip(limits.nearest_turns(x, x))
+        x = self.angles[np.argmin(np.where(beyond, self.faults[:, 2], np.inf))]
+        return self.limits.clip(self.limits.nearest_turns(x, x))
 
-    def why(self, limits: Limits, columns: NDArray[np.int64]) -> str:
-        """What keeps the arm from the pose, on the branch that comes nearest to it.
-
-        Args:
-            limits: Of the coordinates.
-            columns: (6,) the coordinate of each joint.
-        """
+    def why(self) -> str:
+        """What keeps the arm from the pose, on the branch that comes nearest to it."""
+        names, limits = self.limits.names, self.limits
         real = self.faults[:, 0] == LIMIT
         if real.any():
             number = int(np.argmin(np.where(real, self.faults[:, 2], np.inf)))
             _, column, over = self.faults[number]
             c = int(column)
-            (joint,) = np.flatnonzero(columns == c)
-            angle, side = _outside(float(self.angles[number, joint]), float(limits.lower[c]), float(limits.upper[c]))
+            angle, side = _outside(float(self.angles[number, c]), float(limits.lower[c]), float(limits.upper[c]))
             return (
-                f"{real.sum()} of its {BRANCHES} closed-form branches are real; the nearest needs {limits.names[c]} at "
+                f"{real.sum()} of its {BRANCHES} closed-form branches are real; the nearest needs {names[c]} at "
                 f"{angle:.4g} rad, {over:.2g} rad beyond its limit {side:.4g}"
             )
         step = np.argmin(np.where(self.faults[:, 0] == WRIST, np.inf, self.faults[:, 2]))
         if self.faults[step, 0] == SHOULDER:
-            return f"the wrist would be {self.faults[step, 2]:.2g} m too near to the axis of {limits.names[columns[0]]}"
+            return f"the wrist would be {self.faults[step, 2]:.2g} m too near to the axis of {names[self.columns[0]]}"
         if self.faults[step, 0] == ELBOW:
-            names = limits.names[columns[1]], limits.names[columns[2]]
-            return f"the links after {names[0]} and {names[1]} miss the wrist by {self.faults[step, 2]:.2g} m"
-        return f"no angle of {limits.names[columns[4]]} turns the last axis as this orientation asks"
+            upper, fore = names[self.columns[1]], names[self.columns[2]]
+            return f"the links after {upper} and {fore} miss the wrist by {self.faults[step, 2]:.2g} m"
+        return f"no angle of {names[self.columns[4]]} turns the last axis as this orientation asks"
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +113,8 @@ class ClosedFormProof:
         angles, radii, faults = np.zeros((BRANCHES, 6)), np.zeros((BRANCHES, 6)), np.empty((BRANCHES, 3))
         how = self.form, self.deviation, self.wiring, *self.limits.arrays
         judge_pose(*how, pose, near, aligned, angles, radii, faults)
-        return Branches(angles, radii, faults)
+        columns = self.wiring[:, 0]
+        return Branches(angles[:, columns.argsort()], radii[:, columns.argsort()], faults, columns, self.limits)
 
 
 def _outside(angle: float, lower: float, upper: float) -> tuple[float, float]:

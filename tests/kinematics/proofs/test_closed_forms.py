@@ -79,7 +79,7 @@ def test_why_names_the_joint_its_limit_and_by_how_much_it_is_missed() -> None:
     wide = mik.Chain(chain.model, chain.frames[0], limits=dict.fromkeys(chain.names, (-3.0, 3.0)))
     branches = proof_of(chain).judge(wide.poses(x)[0, 0], 1e-5, 1e-5)
     assert branches.proved
-    said = branches.why(chain.limits, chain.paths.wiring[:, 0])
+    said = branches.why()
     assert "rad beyond its limit" in said and "branches are real" in said and any(name in said for name in chain.names)
 
 
@@ -88,5 +88,5 @@ def test_why_says_which_links_miss_the_wrist() -> None:
     pose = np.eye(4)
     pose[:3, 3] = 0.0, 0.0, 3.0
     branches = proof_of(chain).judge(pose, 1e-5, 1e-5)
-    said = branches.why(chain.limits, chain.paths.wiring[:, 0])
+    said = branches.why()
     assert branches.proved and ("miss the wrist by" in said or "too near to the axis" in said)

@@ -1,0 +1,198 @@
+"""A search for all solutions of one target, and for what proves that there are no others."""
+
+from __future__ import annotations
+
+from itertools import count
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.ik.exclude import Exclusion
+from pin_metaik.ik.gather import SETTINGS, VAIN, VAIN_EACH, gather
+from pin_metaik.ik.ledger import Ledger
+from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.proof import Proof
+from pin_metaik.ik.starts import drawn
+from pin_metaik.optimize import Budget
+from pin_metaik.randomness import Rng
+
+Floats = NDArray[np.float64]
+
+BATCH = 128  # starts between two looks at what came of them
+MIDDLE = 5000  # evaluations for a solution in the middle of loose tolerances before all of them is aimed at
+ROOM = 0.1  # of the distance between distinct solutions: tolerances that may move a solution so far
+HALF = 0.25  # of it: half width of the boxes that cover all configurations
+COVERED = 4_096  # boxes that a cover may keep; more are a curve of solutions
+FINEST, FINER = 1e-7, 2_000  # rad or m, boxes: how closely a kept box without a solution is looked at
+TURN = 2.0 * np.pi
+
+
+def collect(
+    problem: IKProblem, x0: Floats, rng: Rng, *, limit: int, apart: float, budget: Budget
+) -> tuple[IKProblem, Floats, Proof | None, int]:
+    """Distinct solutions (s, n), what proves that they are all, and the evaluations spent.
+
+    They are in the middle of the tolerances; if nothing is, anywhere in them, which is returned as the problem first.
+    """
+    middle = Collection(problem, x0, rng, limit, apart, budget)
+    middle.run()
+    ledger = middle.ledger
+    if middle.known or ledger.over():
+        return problem, middle.solutions, middle.complete, ledger.spent
+    rest = Collection(problem.whole, x0, rng, limit, apart, budget, ledger.spent)
+    rest.run()
+    return problem.whole, rest.solutions, rest.complete, rest.ledger.spent
+
+
+class Collection:
+    """The solutions of one problem, as they are found.
+
+    Attributes:
+        problem: What is searched for.
+        ledger: What was spent of which budget, and what proves that there is nothing to be found.
+        known: How many solutions there are so far.
+        complete: What proves that there are no others, if anything does.
+    """
+
+    def __init__(
+        self, problem: IKProblem, x0: Floats, rng: Rng, limit: int, apart: float, budget: Budget, spent: int = 0
+    ) -> None:
+        """Begin with no solution; x0 (n,) is where to start from, and what its joints keep where they do not matter."""
+        self.problem, self.ledger = problem, Ledger(problem, budget, perf_counter(), x0)
+        self.ledger.spent = spent
+        self.known = 0
+        self.complete: Proof | None = None
+        self._x0, self._rng, self._apart = x0, rng, apart
+        self._found = np.empty((limit, problem.chain.n))
+        self._vain = 0
+
+    @property
+    def solutions(self) -> Floats:
+        """(s, n) so far."""
+        return self._found[: self.known]
+
+    def run(self) -> None:
+        """Search until there is a proof, nothing new appears, or there is no budget or room left."""
+        problem, ledger = self.problem, self.ledger
+        if problem.limits.rigid:
+            self._descend(problem.limits.lower[None], patience=1, branch=False)
+            self.complete = Proof.LIMITS
+            return
+        formed = problem.form_branches
+        if ledger.proof is None and formed is not None and formed.proved:
+            ledger.proof = Proof.CLOSED_FORM
+        if ledger.proof is not None:
+            self.complete = ledger.proof
+            return
+        if formed is not None and self._by_closed_form(formed.boxes):
+            return
+        self._by_descents()
+        if formed is None and not self._roomy and len(problem.targets) == 1 and all(problem.targets[0].counts):
+            self._by_cover()
+
+    def _by_closed_form(self, whole: Floats) -> bool:
+        """Descend from the branches of the arm's closed form; whether that is all one can do.
+
+        ``whole`` (b, 2 n) are the branches for all that the tolerances accept. Each has its solution in the end, or it
+        is open whether there are more. In a singularity solutions are curves, and branches no places to start from.
+        """
+        problem, proof = self.problem, self.problem.chain.form_proof
+        assert proof is not None
+        exact = proof.judge(problem.targets[0].pose.homogeneous, 0.0, 0.0).boxes
+        n = problem.chain.n
+        if (exact[:, n:] > 0.5 * self._apart).any():
+            return False
+        starts = problem.branches(self._x0)
+        self._descend(starts, len(starts) + 1, branch=False)
+        missing = whole[~self._has_solution(whole)]
+        self._descend(problem.limits.clip(missing[:, :n]), len(missing) + 1, branch=False)
+        if self._has_solution(whole).all() and not self._roomy:
+            self.complete = Proof.CLOSED_FORM
+        return self.known > 0
+
+    def _by_descents(self) -> None:
+        """Descend from near-by configurations of the atlas and from random ones."""
+        problem, ledger = self.problem, self.ledger
+        exclusion = Exclusion(problem, SETTINGS)
+        total = ledger.left()
+        in_vain = MIDDLE if problem.loose else total - total // 10
+        for index in count():
+            starts = drawn(problem.chain, self._rng, index, BATCH)
+            if index == 0:
+                starts = np.concatenate([self._x0[None], problem.near(BATCH), starts])
+            enough = VAIN + VAIN_EACH * self.known
+            self._descend(starts, enough - self._vain)
+            if not self.known:
+                exclusion.go_on(ledger)
+                if ledger.proof is not None:
+                    self.complete = ledger.proof
+                    return
+                if ledger.met:
+                    self._descend(ledger.x[None], 1)
+            enough = VAIN + VAIN_EACH * self.known
+            hopeless = not self.known and ledger.searched >= in_vain
+            if (
+                self.known == len(self._found)
+                or ledger.left() == 0
+                or ledger.late()
+                or self._vain >= enough
+                or hopeless
+            ):
+                return
+
+    def _by_cover(self) -> None:
+        """Cover all configurations with boxes, and look for a solution in each that is kept."""
+        problem, n, half = self.problem, self.problem.chain.n, HALF * self._apart
+        pose = problem.targets[0].pose.homogeneous
+        if n > len(problem.rows) or self.known == len(self._found):
+            return
+        boxes = problem.chain.boxes(0, pose, 0.0, 0.0, least=half, split=True)
+        if boxes is None:
+            return
+        kept = boxes.look(self.ledger.left_for_boxes, COVERED)
+        self.ledger.add_boxes(boxes.looked)
+        kept = kept[~self._near_solution(kept)] if boxes.done else kept
+        if not boxes.done:
+            return
+        self._descend(problem.limits.clip(kept[:, :n]), len(kept) + 1, branch=False)
+        for box in kept[~self._near_solution(kept)]:
+            part = boxes.within(box, FINEST)
+            small = part.look(min(FINER, self.ledger.left_for_boxes), COVERED)
+            self.ledger.add_boxes(part.looked)
+            if not part.done or not self._near_solution(small).all():
+                return
+        self.complete = Proof.BOXES
+
+    def _descend(self, starts: Floats, patience: int, *, branch: bool = True) -> None:
+        """Descend from each of the starts (s, n), until ``patience`` in a row led to nothing new."""
+        if not len(starts):
+            return
+        ledger = self.ledger
+        spent, known, row = gather(
+            self.problem, starts, self._found, self.known, self._apart, patience, ledger.left(), branch=branch
+        )
+        self._vain = self._vain + row if known == self.known else row
+        self.known, ledger.spent = known, ledger.spent + spent
+
+    @property
+    def _roomy(self) -> bool:
+        """Whether the tolerances leave room for solutions as far apart as distinct ones: then there is no end."""
+        slack = self.problem.whole.tasks[:, 12:18]
+        return bool((np.abs(slack[np.isfinite(slack)]) > ROOM * self._apart).any())
+
+    def _ways(self, boxes: Floats) -> Floats:
+        """(b, s, n) how far each solution is from the centre of each of the boxes (b, 2 n), whole turns aside."""
+        ways = np.abs(boxes[:, None, : self.problem.chain.n] - self.solutions)
+        turns = TURN * np.round(ways / TURN)
+        return np.where(self.problem.limits.winds, np.abs(ways - turns), ways)
+
+    def _has_solution(self, boxes: Floats) -> NDArray[np.bool_]:
+        """(b,) whether there is a solution in each of the boxes (b, 2 n)."""
+        inside = self._ways(boxes) <= boxes[:, None, self.problem.chain.n :] + FINEST
+        return inside.all(axis=2).any(axis=1)
+
+    def _near_solution(self, boxes: Floats) -> NDArray[np.bool_]:
+        """(b,) whether all of each box (b, 2 n) is so near to a solution that nothing in it is distinct from that."""
+        near = self._ways(boxes) + boxes[:, None, self.problem.chain.n :] <= self._apart
+        return near.all(axis=2).any(axis=1)

@@ -1,0 +1,48 @@
+"""Descents from many starts, of which the distinct solutions are kept."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.refine.dls import DLS, PROGRESS
+
+VAIN = 60  # starts in a row that led to nothing new ...
+VAIN_EACH = 15  # ... and as many more for each solution known, before a search for others ends
+SETTINGS = DLS()
+
+
+def gather(
+    problem: IKProblem,
+    starts: NDArray[np.float64],
+    found: NDArray[np.float64],
+    known: int,
+    apart: float,
+    patience: int,
+    evaluations: int,
+    *,
+    branch: bool = True,
+) -> tuple[int, int, int]:
+    """Descend from each start (s, n) and add what is new to ``found``, of which ``known`` rows are taken.
+
+    Returns evaluations, rows taken, and how many starts in a row led to nothing new at the end.
+    """
+    chain = problem.chain
+    result: tuple[int, int, int] = chain.kernels.descend_all(
+        *chain.paths.arrays,
+        problem.tasks,
+        problem.descended,
+        *chain.limits.arrays,
+        np.ascontiguousarray(starts),
+        apart,
+        patience,
+        branch,
+        SETTINGS.damping,
+        PROGRESS,
+        SETTINGS.iterations,
+        evaluations,
+        found,
+        known,
+    )
+    return result
