@@ -128,8 +128,8 @@ def solve_ik_batch(
     k = len(asked)
     bases = _bases(chain, q0, k)
     batch = IKBatch(
-        bases.copy(), np.zeros(k, bool), np.empty(k, object), np.full(k, None), np.zeros(k), np.zeros(k), np.zeros(k, int), 0.0,
-        chain, asked, world,
+        bases.copy(), np.zeros(k, bool), np.empty(k, object), np.full(k, None), np.zeros(k), np.zeros(k),
+        np.zeros(k, int), 0.0, chain, asked, world,
     )  # fmt: skip
 
     def alone(i: int) -> None:

@@ -14,6 +14,7 @@ from pin_metaik.ik.ledger import Ledger
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.starts import drawn
+from pin_metaik.kinematics.proofs.boxes import Boxes
 from pin_metaik.optimize import Budget
 from pin_metaik.randomness import Rng
 
@@ -107,8 +108,10 @@ class Collection:
         self._descend(starts, len(starts) + 1, branch=False)
         missing = whole[~self._has_solution(whole)]
         self._descend(problem.limits.clip(missing[:, :n]), len(missing) + 1, branch=False)
-        if self._has_solution(whole).all() and not self._roomy:
-            self.complete = Proof.CLOSED_FORM
+        boxes = problem.boxes(0, split=True)
+        if boxes is not None and not self._roomy:
+            missing = self._clipped(whole[~self._has_solution(whole)])
+            self.complete = Proof.CLOSED_FORM if self._are_clear(boxes, missing) else None
         return self.known > 0
 
     def _by_descents(self) -> None:
@@ -152,17 +155,22 @@ class Collection:
             return
         kept = boxes.look(self.ledger.left_for_boxes, COVERED)
         self.ledger.add_boxes(boxes.looked)
-        kept = kept[~self._near_solution(kept)] if boxes.done else kept
         if not boxes.done:
             return
+        kept = kept[~self._near_solution(kept)]
         self._descend(problem.limits.clip(kept[:, :n]), len(kept) + 1, branch=False)
-        for box in kept[~self._near_solution(kept)]:
+        if self._are_clear(boxes, kept[~self._near_solution(kept)]):
+            self.complete = Proof.BOXES
+
+    def _are_clear(self, boxes: Boxes, kept: Floats) -> bool:
+        """Whether boxes (k, 2 n) that were kept hold nothing distinct from the solutions, when looked at closely."""
+        for box in kept:
             part = boxes.within(box, FINEST)
             small = part.look(min(FINER, self.ledger.left_for_boxes), COVERED)
             self.ledger.add_boxes(part.looked)
             if not part.done or not self._near_solution(small).all():
-                return
-        self.complete = Proof.BOXES
+                return False
+        return True
 
     def _descend(self, starts: Floats, patience: int, *, branch: bool = True) -> None:
         """Descend from each of the starts (s, n), until ``patience`` in a row led to nothing new."""
@@ -180,6 +188,13 @@ class Collection:
         """Whether the tolerances leave room for solutions as far apart as distinct ones: then there is no end."""
         slack = self.problem.whole.tasks[:, 12:18]
         return bool((np.abs(slack[np.isfinite(slack)]) > ROOM * self._apart).any())
+
+    def _clipped(self, boxes: Floats) -> Floats:
+        """The part of boxes (b, 2 n) that is inside the limits."""
+        n, (lower, upper) = self.problem.chain.n, (self.problem.limits.lower, self.problem.limits.upper)
+        least = np.clip(boxes[:, :n] - boxes[:, n:], lower, upper)
+        most = np.clip(boxes[:, :n] + boxes[:, n:], lower, upper)
+        return np.hstack([0.5 * (least + most), 0.5 * (most - least)])
 
     def _ways(self, boxes: Floats) -> Floats:
         """(b, s, n) how far each solution is from the centre of each of the boxes (b, 2 n), whole turns aside."""

@@ -1,4 +1,4 @@
-"""Boxes of configurations, by turns with the descents of a search: a proof that there is nothing, or places to start."""
+"""Boxes of configurations, by turns with the descents of a search: they prove that it is in vain, or help."""
 
 from __future__ import annotations
 

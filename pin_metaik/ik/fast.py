@@ -30,7 +30,6 @@ from pin_metaik.randomness import Rng
 
 SOLVED, UNREACHABLE = IKStatus.SOLVED, IKStatus.UNREACHABLE
 SETTLE = np.array([STIFF, SETTLED, 100.0])  # how to come near to what is out of reach; see ``DLS.settle``
-AT_MIDDLE = 300.0  # evaluations, at most, for the middle of tolerances that are loose
 
 
 def solve_fast(
@@ -63,8 +62,6 @@ def solve_fast(
             return None
     if asked is not None:
         settings = np.array([*settings[:4], near, aligned, settings[6]])
-        if near > DEFAULT_TOLERANCE or DEFAULT_TOLERANCE < aligned < math.inf:
-            settings[3] = min(settings[3], AT_MIDDLE)
     oriented = aligned < math.inf
     lane = chain.pose_lane if oriented else chain.position_lane
     starts = lane.starts if rng is None else drawn(chain, rng, 0, LANE)
@@ -74,13 +71,8 @@ def solve_fast(
         todo, spent, proof = DESCEND, 1, None
         if lane.solve_directly is not None:
             todo, position, quaternion = lane.solve_directly(lane.block, matrix, q)
-            if todo == SEARCH and chain.form_proof is not None:
-                branches = chain.form_proof.judge(matrix, near, aligned)
-                if branches.proved:
-                    proof = Proof.CLOSED_FORM
-                    nearest = branches.nearest()
-                    if nearest is not None:
-                        chain.coordinates.write(nearest, q)
+            if todo == SEARCH:
+                proof = refuted(chain, matrix, near, aligned, q)
         if todo != DONE and proof is None:
             spent, position, quaternion = lane.solve_pose(lane.block, lane.rows, starts, settings, matrix, q)
             if spent == 0:
@@ -103,6 +95,24 @@ def solve_fast(
     if met:
         return IKResult(q, SOLVED, distance, angle, spent, took, chain, asked, None, None, (), None, parts)
     return IKResult(q, UNREACHABLE, distance, angle, spent, took, chain, asked, None, None, (), proof, parts)
+
+
+def refuted(
+    chain: Chain, pose: NDArray[np.float64], near: float, aligned: float, q: NDArray[np.float64]
+) -> Proof | None:
+    """What proves that an arm with a closed form does not reach a pose (4, 4), to within ``near`` m, ``aligned`` rad.
+
+    If something does, q (nq,) gets the branch that is least beyond its limits, brought inside them.
+    """
+    decide = chain.form_proof
+    branches = None if decide is None else decide.judge(pose, near, aligned)
+    if branches is None or not branches.proved:
+        return None
+    nearest = branches.nearest()
+    if nearest is not None:
+        chain.coordinates.write(nearest, q)
+    far = chain.kernels.is_out_of_reach(chain.pose_lane.block, near, aligned, pose)
+    return Proof.REACH if far else Proof.CLOSED_FORM
 
 
 def as_numbers(target: object) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit
-from pin_metaik.kinematics.branches import Vector
+from pin_metaik.kinematics.branches import Vector, numbers_of
 from pin_metaik.kinematics.closed_form import DESCEND, DONE, SEARCH
 from pin_metaik.kinematics.descent import Work, descend_from, workspace
 from pin_metaik.kinematics.desk import (
@@ -20,6 +20,7 @@ from pin_metaik.kinematics.desk import (
     parts_of,
     read,
     write_end,
+    write_world,
 )
 from pin_metaik.kinematics.direct import REFUSED, take_branch
 from pin_metaik.kinematics.guesses import Looks, lookup_space
@@ -139,9 +140,10 @@ def solve_poses(
     """Search for the poses (k, 4, 4) of one tip, each on its own; with the rows ``POSITION``, for their positions.
 
     ``block`` is the packed chain; ``settings`` (7,) are damping, progress, evaluations from one start and in all, the
-    tolerances, m and rad, and evaluations for a pose for which the closed form has no branch. q (k, nq) is where to start from and what other joints keep, and gets the nearest to the
-    target that was found: by the closed form, if the arm has one, then by ``search``. What is proved to be out of reach
-    is not searched for. ``evaluations`` (k,) gets how many there were, or REFUSED.
+    tolerances, m and rad, and evaluations for a pose for which the closed form has no branch. q (k, nq) is where to
+    start from and what other joints keep, and gets the nearest to the target that was found: by the closed form, if the
+    arm has one, then by ``search``. What is proved to be out of reach is not searched for. ``evaluations`` (k,) gets
+    how many there were, or REFUSED.
     """
     S, n = sizes_of(block)
     desk = desk_for(n, S)
@@ -151,6 +153,23 @@ def solve_poses(
         if todo != DONE:
             spent = go_on(block, rows, starts, settings, q[i], desk, (spent, todo), work, looks)
         evaluations[i] = spent
+
+
+@inline
+def beyond(block: Floats, near: float, aligned: float, target: Floats, desk: Desk) -> bool:
+    """``is_out_of_reach`` in room that was made for it."""
+    _, bounds, _, reach, _ = unpack(block)
+    task, _, _, _, _ = laid_out(desk, bounds[0].shape[0])
+    write_world(numbers_of(target), task)
+    task[24], task[25] = 0.999 * near, 0.999 * aligned
+    return out_of_reach(task, reach)
+
+
+@jit(f"b1(f8[::1], f8, f8, {POSE})")
+def is_out_of_reach(block: Floats, near: float, aligned: float, target: Floats) -> bool:
+    """Whether a target (4, 4) is proved to be out of reach of the links, to within ``near`` m and ``aligned`` rad."""
+    S, n = sizes_of(block)
+    return beyond(block, near, aligned, target, desk_for(n, S))
 
 
 @inline
@@ -164,7 +183,7 @@ def settle(
         return REFUSED
     for i in range(6):
         task[12 + i], task[18 + i] = 0.0 if i < 3 or rows is None else np.inf, 1.0
-    task[24] = task[25] = 0.0
+    task[24] = task[25] = 0.0  # nothing is near enough
     descent, most = (settings[0], settings[1], int(settings[2])), int(settings[2])
     spent = descend_from(arm, task.reshape(1, 26), rows, bounds, guess, descent, most, np.inf, best, work)[0]
     write_end(best, entries, q)

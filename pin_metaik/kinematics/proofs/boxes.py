@@ -66,7 +66,7 @@ class Boxes:
         return self.done and self.clean
 
     def look(self, boxes: int, leaves: int = 1) -> Floats:
-        """Look at no more than so many boxes; those that are kept (k, 2 m), centres and half widths, at most ``leaves``.
+        """Look at so many boxes at most; returns the centres and half widths of those kept (k, 2 m), k <= ``leaves``.
 
         The last coordinates, beyond the chain's own, are those of the free joints at the tip.
         """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,7 @@ from pin_metaik.kinematics.proofs.deviation import deviation, ideal
 from pin_metaik.kinematics.reach import ROUNDING
 
 Floats = NDArray[np.float64]
-BRANCHES = 8
+BRANCHES, TURN = 8, 2.0 * math.pi
 POSSIBLE, SHOULDER, WRIST, ELBOW, LIMIT = range(5)  # as the compiled loop numbers what is wrong with a branch
 
 
@@ -49,7 +50,10 @@ class Branches:
     @property
     def boxes(self) -> Floats:
         """(b, 12) coordinates of the branches that may hold a configuration, and how far the true ones may be off."""
-        return np.hstack([self.angles, self.radii])[self.possible]
+        angles, radii = self.angles[self.possible], self.radii[self.possible]
+        turns = np.ceil((self.limits.lower - ROUNDING - radii - angles) / TURN)  # to the first copy that is not below
+        bound = np.isfinite(self.limits.lower) & (radii < np.pi)
+        return np.hstack([angles + TURN * np.where(bound, turns, 0.0), radii])
 
     def nearest(self) -> Floats | None:
         """Coordinates (6,) of the branch least beyond a limit, brought inside the limits; None, if none is real."""
@@ -57,7 +61,8 @@ class Branches:
         if not beyond.any():
             return None
         x = self.angles[np.argmin(np.where(beyond, self.faults[:, 2], np.inf))]
-        return self.limits.clip(self.limits.nearest_turns(x, x))
+        ways = zip(x.tolist(), self.limits.lower.tolist(), self.limits.upper.tolist(), strict=True)
+        return np.array([min(max(_copy(*way)[0], way[1]), way[2]) for way in ways])
 
     def why(self) -> str:
         """What keeps the arm from the pose, on the branch that comes nearest to it."""
@@ -67,7 +72,7 @@ class Branches:
             number = int(np.argmin(np.where(real, self.faults[:, 2], np.inf)))
             _, column, over = self.faults[number]
             c = int(column)
-            angle, side = _outside(float(self.angles[number, c]), float(limits.lower[c]), float(limits.upper[c]))
+            angle, side = _copy(float(self.angles[number, c]), float(limits.lower[c]), float(limits.upper[c]))
             return (
                 f"{real.sum()} of its {BRANCHES} closed-form branches are real; the nearest needs {names[c]} at "
                 f"{angle:.4g} rad, {over:.2g} rad beyond its limit {side:.4g}"
@@ -117,8 +122,9 @@ class ClosedFormProof:
         return Branches(angles[:, columns.argsort()], radii[:, columns.argsort()], faults, columns, self.limits)
 
 
-def _outside(angle: float, lower: float, upper: float) -> tuple[float, float]:
-    """The copy of an angle by whole turns that is nearest to a range, and the limit it is beyond."""
-    turn = 2.0 * np.pi
-    above = angle + turn * np.ceil((lower - angle) / turn)
-    return (above, upper) if above - upper <= lower - (above - turn) else (above - turn, lower)
+def _copy(angle: float, lower: float, upper: float) -> tuple[float, float]:
+    """The copy of an angle by whole turns that is nearest to a range, and the side of it that is nearest to that."""
+    if lower == -math.inf:
+        return angle, upper
+    above = angle + TURN * math.ceil((lower - angle) / TURN)
+    return (above, upper) if above - upper <= lower - (above - TURN) else (above - TURN, lower)
