@@ -204,10 +204,14 @@ class Collection:
 
     def _has_solution(self, boxes: Floats) -> NDArray[np.bool_]:
         """(b,) whether there is a solution in each of the boxes (b, 2 n)."""
-        inside = self._ways(boxes) <= boxes[:, None, self.problem.chain.n :] + FINEST
-        return inside.all(axis=2).any(axis=1)
+        return _any(self._ways(boxes) <= boxes[:, None, self.problem.chain.n :] + FINEST)
 
     def _near_solution(self, boxes: Floats) -> NDArray[np.bool_]:
         """(b,) whether all of each box (b, 2 n) is so near to a solution that nothing in it is distinct from that."""
-        near = self._ways(boxes) + boxes[:, None, self.problem.chain.n :] <= self._apart
-        return near.all(axis=2).any(axis=1)
+        return _any(self._ways(boxes) + boxes[:, None, self.problem.chain.n :] <= self._apart)
+
+
+def _any(met: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """(b,) whether a box meets a condition (b, s, n) in all coordinates of any solution."""
+    some: NDArray[np.bool_] = np.all(met, axis=2).any(axis=1)
+    return some

@@ -9,6 +9,7 @@ from pin_metaik.ik.refine import Refiner
 from pin_metaik.kinematics.proofs.boxes import Boxes
 
 STAGES = (300, 400), (1_000, 3_000), (3_000, 30_000)  # after so many evaluations of a search, so many boxes
+MANY = 9  # joints from which on the last stage proves next to nothing: of talos' nine 2 targets of 18
 CHUNK = 1_000  # boxes between two looks at the clock, where Ctrl-C is heard, too
 STARTS = 8  # boxes too small to be split, of one stage, that are descended from
 
@@ -25,7 +26,7 @@ class Exclusion:
         self._problem, self._refiner = problem.whole, refiner
         frames = range(len(problem.targets))
         self._boxes = [boxes for t in frames if (boxes := problem.boxes(t)) is not None]
-        self._stages = list(STAGES)
+        self._stages = list(STAGES if problem.chain.n < MANY else STAGES[:-1])
 
     def go_on(self, ledger: Ledger) -> None:
         """Look at the boxes that are due after the evaluations that the search has taken so far."""

@@ -198,7 +198,9 @@ def test_settings_that_make_no_sense_are_refused() -> None:
 def test_time_ends_a_search_and_is_called_stopped() -> None:
     chain, far = behind_its_back()
     body = mik.Chain(mik.load_robot("talos").model, "gripper_left_base_link")  # nine joints: too many for a proof
-    pose = pin.SE3(pin.exp3(np.array([0.0, 0.0, 3.0])), np.array([-0.4, -0.3, 0.3]))
+    rng = np.random.default_rng(0)
+    pose = body.placements(body.q(body.box.sample(rng, 40)[0]))[0]
+    pose.rotation = pin.Quaternion(*rng.normal(size=4)).normalized().matrix()
     for seeder, arm, target in ((None, chain, far), ("gwo", chain, far), ("auto", body, pose)):
         result = mik.solve_ik(arm, target, solver=mik.IKSolver(seeder, "dls", mik.Budget(seconds=0.05)))
         assert result.status is mik.IKStatus.STOPPED

@@ -16,6 +16,8 @@ from pin_metaik.kinematics.paths import Paths, matrix_of
 from pin_metaik.kinematics.reach import ROUNDING, links_of, tightened
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Arrays: TypeAlias = tuple[Floats, Ints, Floats, Floats, Floats, Floats, Floats, Ints]
 Free: TypeAlias = tuple[bool, bool, bool]  # which turns about the tip's axes x, y and z a target leaves free
 
 WHOLE: Free = (False, False, False)
@@ -86,7 +88,7 @@ class ProofArm:
         n: Number of the chain's coordinates; those after them are free joints at the tip.
     """
 
-    arrays: tuple[NDArray[np.float64] | NDArray[np.int64], ...]
+    arrays: Arrays
     backwards: bool
     n: int
 
@@ -99,7 +101,8 @@ class ProofArm:
     @property
     def split(self) -> ProofArm:
         """The same arm, but the joints of a wrist are split, too, so that what is kept is small in every coordinate."""
-        return replace(self, arrays=(*self.arrays[:-1], 2 * self.arrays[-1]))
+        *others, wrist = self.arrays
+        return replace(self, arrays=(*others, 2 * wrist))
 
     @property
     def reach(self) -> float:
