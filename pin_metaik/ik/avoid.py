@@ -56,6 +56,8 @@ def keep_clear(first: IKResult, q0: ArrayLike | None, solver: IKSolver, world: C
         seconds=first.seconds + perf_counter() - began,
         world=world,
         contacts=world.checker.contacts(q) if verdict.collides else (),
+        proof=search.proof if verdict.collides else None,
+        resolution=search.resolution if verdict.collides else None,
     )
 
 

@@ -1,26 +1,31 @@
-"""From a solution in collision to one that is free: other ones first, then pushed ones, then metaheuristic seeds."""
+"""From a solution in collision to one that is free: all others, where they can be counted, or pushed and covered."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from itertools import count, cycle, islice
+from itertools import chain, count, cycle, islice
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.collision import CollisionWorld
+from pin_metaik.ik.collect import collect
 from pin_metaik.ik.gather import VAIN, VAIN_EACH, gather
-from pin_metaik.ik.ledger import Ledger
+from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.push import Push
 from pin_metaik.ik.starts import BATCH, drawn
-from pin_metaik.optimize import Metaheuristic, minimize
+from pin_metaik.optimize import Budget, Metaheuristic, minimize
 from pin_metaik.randomness import DEFAULT_SEED, Rng, as_generator
 
 NEAREST = 24  # entries of the atlas to start from
+EVERY = 50_000  # evaluations for all solutions, where time is what is budgeted
 CANDIDATES = 256  # solutions kept, to be told apart
 APART = 0.05  # rad or m between solutions; what is nearer collides alike
 OTHERS = 16  # starts of a redundant chain before any solution is pushed
+FINE = 0.1  # rad or m, half width of the boxes of its solutions that are looked at
+KEPT, COVER = 4_096, 20_000  # of such boxes at most, and of all that are looked at for them
 PUSHED = 4  # of the solutions found, those pushed in each round: the least deep
 SEEDING = 0.02  # of what is left, for a metaheuristic in each round
 ROUND = 256  # further starts in each round
@@ -35,6 +40,9 @@ class ClearSearch:
         ledger: What was spent of which budget.
         found: (CANDIDATES, n) solutions in collision; ``known`` rows of them are taken.
         complete: Whether there are no other solutions, as far as can be told.
+        proof: What proves that there are none.
+        resolution: Half width (rad or m) of boxes that cover all solutions of a redundant chain, in each of which one
+            was looked at; None, if that was not done.
     """
 
     def __init__(
@@ -45,6 +53,8 @@ class ClearSearch:
         self.found = np.empty((CANDIDATES, problem.chain.n))
         self.known = self.vain = 0
         self.complete = False
+        self.proof: Proof | None = None
+        self.resolution: float | None = None
         self._depths = np.full(CANDIDATES, np.nan)  # of the solutions found, NaN where not known yet
         self._pushed: set[int] = set()
         self._redundant = problem.chain.n > len(problem.rows) or problem.loose
@@ -53,18 +63,48 @@ class ClearSearch:
     def run(self, x: NDArray[np.float64], seeder: Metaheuristic) -> NDArray[np.float64] | None:
         """Coordinates (n,) that are a solution, from x (n,), which is one but for collisions; None: none was found."""
         self.found[0], self.known = x, 1
+        if not self._redundant:
+            return self.every()
         starts = self.starts()
-        free = self.others(islice(starts, OTHERS) if self._redundant else starts)
-        for means in cycle(("push", "others", "seed")):
+        free = self.others(islice(starts, OTHERS))
+        for means in chain(("push", "cover"), cycle(("others", "push", "seed"))):
             if free is not None or self.ledger.over() or self.complete:
                 break
             match means:
                 case "push":
                     free = self.push()
+                case "cover":
+                    free = self.cover()
                 case "others":
                     free = self.others(islice(starts, ROUND))
                 case _:
                     free = self.seed(seeder)
+        return free
+
+    def every(self) -> NDArray[np.float64] | None:
+        """The first of all solutions that is free, the nearest to the one that collides first."""
+        budget = Budget(evaluations=self.ledger.left() if self.ledger.left() < ENDLESS else EVERY)
+        _, found, self.proof, spent = collect(
+            self.problem, self.found[0], self.rng, limit=CANDIDATES - 1, apart=APART, budget=budget
+        )
+        self.ledger.spent += spent
+        found = found[np.argsort(np.linalg.norm(found - self.found[0], axis=1), kind="stable")]
+        self.found[1 : 1 + len(found)], self.known, self.complete = found, 1 + len(found), True
+        return next((x for x in found if self._accepts(x)), None)
+
+    def cover(self) -> NDArray[np.float64] | None:
+        """Cover the solutions of a redundant chain with boxes, and look at one in each; then push the least deep."""
+        boxes = self.problem.boxes(0, least=FINE) if len(self.problem.targets) == 1 else None
+        if boxes is None:
+            return None
+        kept = boxes.look(min(COVER, self.ledger.left_for_boxes), KEPT)
+        self.ledger.add_boxes(boxes.looked)
+        if not boxes.done:
+            return None
+        free = self.others(kept[:, : self.problem.chain.n])
+        if free is None and not self.ledger.over():
+            self.resolution, self.complete = FINE, True
+            free = self.push()
         return free
 
     def least_deep(self) -> NDArray[np.float64]:

@@ -93,8 +93,8 @@ def solve_fast(
         return Refinement(chain.x(q), False, spent)
     parts, took = (position, quaternion) if asked is None else None, perf_counter() - began
     if met:
-        return IKResult(q, SOLVED, distance, angle, spent, took, chain, asked, None, None, (), None, parts)
-    return IKResult(q, UNREACHABLE, distance, angle, spent, took, chain, asked, None, None, (), proof, parts)
+        return IKResult(q, SOLVED, distance, angle, spent, took, chain, asked, None, None, (), None, None, parts)
+    return IKResult(q, UNREACHABLE, distance, angle, spent, took, chain, asked, None, None, (), proof, None, parts)
 
 
 def refuted(

@@ -18,7 +18,7 @@ from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSettin
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import Chain, Limits
-from pin_metaik.kinematics.proofs.boxes import Boxes
+from pin_metaik.kinematics.proofs.boxes import TINY, Boxes
 from pin_metaik.kinematics.proofs.closed_forms import Branches
 from pin_metaik.optimize import Box
 from pin_metaik.optimize.settings import few
@@ -178,17 +178,17 @@ class IKProblem:
             return None
         return proof.judge(target.pose.homogeneous, *target.allowance)
 
-    def boxes(self, t: int, *, split: bool = False) -> Boxes | None:
+    def boxes(self, t: int, *, least: float = TINY, split: bool = False) -> Boxes | None:
         """All configurations, to be excluded for target number t; None, where that proves nothing or has no bounds.
 
         A target that frees a translation is looked at for its orientation alone; one that frees two turns, for its
-        position alone. ``split`` as for ``Chain.boxes``.
+        position alone. ``least`` and ``split`` as for ``Chain.boxes``.
         """
         target, near = self.targets[t], self.targets[t].allowance[0]
         free = not target.counts[3], not target.counts[4], not target.counts[5]
         if near == math.inf and sum(free) > 1:
             return None
-        return self.chain.boxes(t, target.pose.homogeneous, near, target.tilt, free, split=split)
+        return self.chain.boxes(t, target.pose.homogeneous, near, target.tilt, free, least=least, split=split)
 
     def near(self, count: int) -> NDArray[np.float64]:
         """Sampled coordinates (count, n) of the chain's atlas with the poses nearest to the targets, nearest first."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.proof import Proof
 from pin_metaik.kinematics import Chain
 
 SHOWN = 3  # contacts in a sentence
@@ -45,6 +46,15 @@ def cannot_move(problem: IKProblem) -> str:
     if not stuck:
         return ""
     return f"{', '.join(stuck)} cannot move: {'its' if len(stuck) == 1 else 'their'} limits are equal"
+
+
+def in_collision(proof: Proof | None, resolution: float | None) -> str:
+    """That a target is met only in collision, and how well its solutions were looked at."""
+    if proof is not None:
+        return "every solution collides"
+    if resolution is not None:
+        return f"met only in collision, at a resolution of {resolution:g} rad"
+    return "met only in collision, as far as was looked"
 
 
 def collisions(chain: Chain, world: CollisionWorld | None, contacts: Sequence[Contact]) -> str:

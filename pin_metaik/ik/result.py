@@ -15,7 +15,7 @@ from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.dexterity import rank
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
-from pin_metaik.ik.reasons import cannot_move, collisions, out_of_reach
+from pin_metaik.ik.reasons import cannot_move, collisions, in_collision, out_of_reach
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 
@@ -56,7 +56,10 @@ class IKResult:
         world: The world it must not collide in, if one was given. A pickle leaves it behind, as it has all meshes in
             it: a result that comes out of one has ``None``, until a world is assigned.
         contacts: What collides at ``q``, the deepest first, when the status is ``IN_COLLISION``.
-        proof: What proves that the target is out of reach, when the status is ``UNREACHABLE``.
+        proof: What proves that the target is out of reach, when the status is ``UNREACHABLE``; when it is
+            ``IN_COLLISION``, what proves that all solutions were looked at (see ``IKSolutions.complete``).
+        resolution: Of a chain with more joints than the target needs, ``IN_COLLISION``: half width (rad or m) of boxes
+            that cover all of its solutions, in each of which one was looked at; ``None``, if that was not done.
         parts: Position and quaternion of a target that is a pose, in the place of a copy of it.
     """
 
@@ -72,6 +75,7 @@ class IKResult:
     world: CollisionWorld | None = field(default=None, repr=False)
     contacts: tuple[Contact, ...] = ()
     proof: Proof | None = None
+    resolution: float | None = None
     parts: Parts | None = field(default=None, repr=False)
 
     @property
@@ -123,7 +127,7 @@ class IKResult:
                 return f"nothing close enough found in {self.evaluations} evaluations; {self._nearest}"
             case IKStatus.IN_COLLISION:
                 shown = collisions(self.chain, self.world, self.contacts)
-                return f"met only in collision; the least deep found: {shown}"
+                return f"{in_collision(self.proof, self.resolution)}; the least deep found: {shown}"
             case IKStatus.STOPPED:
                 return "time was up before it was solved; this is the best so far"
 

@@ -101,8 +101,8 @@ class ProofArm:
     @property
     def split(self) -> ProofArm:
         """The same arm, but the joints of a wrist are split, too, so that what is kept is small in every coordinate."""
-        *others, wrist = self.arrays
-        return replace(self, arrays=(*others, 2 * wrist))
+        joints, wiring, knots, tip, lower, upper, reach, wrist = self.arrays
+        return replace(self, arrays=(joints, wiring, knots, tip, lower, upper, reach, 2 * wrist))
 
     @property
     def reach(self) -> float:
