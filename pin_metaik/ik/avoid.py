@@ -12,6 +12,7 @@ from pin_metaik.collision import CollisionWorld
 from pin_metaik.ik.clear import ClearSearch
 from pin_metaik.ik.ledger import Ledger
 from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solver import FALLBACK, IKSolver
 from pin_metaik.optimize import make
@@ -38,7 +39,9 @@ def keep_clear(first: IKResult, q0: ArrayLike | None, solver: IKSolver, world: C
     ledger.spent = first.evaluations
     search = ClearSearch(problem.whole if problem.loose else problem, world, base, ledger, rng)
     free: NDArray[np.float64] | None = None
-    if not _hopeless(problem, world, first.q):
+    if _hopeless(problem, world, first.q):
+        search.proof = Proof.CONTACT
+    else:
         free = search.run(first.x, make(FALLBACK if solver.seeder in (None, "auto") else solver.seeder))
     if free is not None:
         q, status = chain.q(chain.limits.nearest_turns(free, chain.x(base)), base), IKStatus.SOLVED

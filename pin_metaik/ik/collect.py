@@ -80,12 +80,10 @@ class Collection:
             self._descend(problem.limits.lower[None], patience=1, branch=False)
             self.complete = Proof.LIMITS
             return
-        formed = problem.form_branches
-        if ledger.proof is None and formed is not None and formed.proved:
-            ledger.proof = Proof.CLOSED_FORM
+        self.complete = ledger.proof = problem.refuted
         if ledger.proof is not None:
-            self.complete = ledger.proof
             return
+        formed = problem.form_branches
         if formed is not None and self._by_closed_form(formed.boxes):
             return
         self._by_descents()

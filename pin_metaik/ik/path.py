@@ -18,6 +18,7 @@ from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidSetting, InvalidTarget
 from pin_metaik.ik.gather import gather
 from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
@@ -119,7 +120,12 @@ def _layers(problems: list[IKProblem], base: NDArray[np.float64], near: bool, rn
     x0 = problems[0].chain.x(base)
     followed = x0[None] if near else np.empty((0, len(x0)))
     for index, problem in enumerate(problems):
-        fresh = np.concatenate([problem.near(FRESH), drawn(problem.chain, rng, index, FRESH)])
+        if problem.refuted not in (None, Proof.LIMITS):
+            layers.append(np.empty((0, len(x0))))
+            continue
+        fresh = problem.branches(followed[0] if len(followed) else x0)
+        if not len(fresh):
+            fresh = np.concatenate([problem.near(FRESH), drawn(problem.chain, rng, index, FRESH)])
         layer = _widened(problem, base, np.empty((0, len(x0))), followed, followed=True)
         layer = _widened(problem, base, layer, fresh)
         if not len(layer):  # nothing in the middle of the tolerances

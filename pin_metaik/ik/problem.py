@@ -170,6 +170,12 @@ class IKProblem:
             return Proof.LIMITS
         return Proof.REACH if self.gap > 0.0 else None
 
+    @property
+    def refuted(self) -> Proof | None:
+        """What proves, by the limits, the links or the arm's closed form, that nothing meets the targets."""
+        formed = self.form_branches if self.proof is None else None
+        return Proof.CLOSED_FORM if formed is not None and formed.proved else self.proof
+
     @cached_property
     def form_branches(self) -> Branches | None:
         """The branches of the arm's closed form for all that the target of its whole pose accepts; None without one."""

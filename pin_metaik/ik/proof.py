@@ -6,8 +6,10 @@ from enum import StrEnum
 
 
 class Proof(StrEnum):
-    """What proves that a target has no solution, or that no other one exists."""
+    """What proves that a target has no solution, or that no other one exists than those that were seen."""
 
+    CONTACT = "CONTACT"
+    """What collides stands still, or is held by the target where it is: it collides in every solution."""
     LIMITS = "LIMITS"
     """No joint of the chain can move, and where it stands it does not meet the target."""
     REACH = "REACH"

@@ -20,7 +20,6 @@ from pin_metaik.ik.exclude import STAGES, Exclusion
 from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.nullspace import slide
 from pin_metaik.ik.problem import IKProblem
-from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.refine import DLS, Refinement, Refiner, make_refiner
 from pin_metaik.ik.refine.dls import PROGRESS
 from pin_metaik.ik.result import IKResult, IKStatus
@@ -113,13 +112,8 @@ class IKSolver:
         x0 = chain.x(base)
         aim = problem.whole if problem.loose else problem
         ledger = Ledger(aim, self.budget, began, x0, self._most if self._decides else None)
-        if (
-            self._decides
-            and ledger.proof is None
-            and problem.form_branches is not None
-            and problem.form_branches.proved
-        ):
-            ledger.proof = Proof.CLOSED_FORM
+        if self._decides:
+            ledger.proof = problem.refuted
         if first is not None:
             ledger.add(first)
         if chain.limits.rigid:  # there is nothing to search: it stands where it stands
@@ -160,7 +154,7 @@ class IKSolver:
         """
         measure = SELECT[self.select]
         budget = Budget(evaluations=max(1, ledger.left(CHOICE_SHARE)), seconds=self.budget.seconds)
-        problem, found, _, spent = collect(problem, x0, rng, limit=CHOICE, apart=1e-2, budget=budget)
+        problem, found, complete, spent = collect(problem, x0, rng, limit=CHOICE, apart=1e-2, budget=budget)
         ledger.spent += spent
         if problem.world is not None:
             found = found[[problem.accepts(q) for q in problem.chain.q(found, base)]]
