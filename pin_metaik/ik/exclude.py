@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from pin_metaik.ik.ledger import Ledger
+from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.refine import Refiner
 from pin_metaik.kinematics.proofs.boxes import Boxes
 
-STAGES = (300, 400), (1_000, 3_000), (3_000, 30_000)  # after so many evaluations of a search, so many boxes
-MANY = 9  # joints from which on the last stage proves next to nothing: of talos' nine 2 targets of 18
+FIRST = 300  # evaluations before the first boxes: none of 1,000,000 random targets of an arm in 2,800 needs more
+FAR = 3e-3  # m and rad: where the nearest is farther away by then, there is mostly nothing to be found
+HEAD, TAIL = 200, 7_000  # evaluations for which no box is looked at, where the nearest is far and where it is near
+LONG, TIMES = 3_000, 10  # evaluations after which, where it is far, boxes are looked at ten at a time
+MANY, FEW = 9, 3_000  # joints from which on more boxes than these prove next to nothing: of talos' nine 2 of 18 targets
 CHUNK = 1_000  # boxes between two looks at the clock, where Ctrl-C is heard, too
-STARTS = 8  # boxes too small to be split, of one stage, that are descended from
+STARTS = 8  # boxes too small to be split, at a time, that are descended from
 
 
 class Exclusion:
     """The boxes of one problem, for each of its frames: when one frame cannot be where it shall, not all can.
 
-    A box takes about as long as an evaluation and counts as one. Few are looked at early: most targets that are out of
-    reach need few, and most that are not are solved by then.
+    A box takes about as long as an evaluation and counts as one. As long as it is open whether there is a solution, as
+    many boxes are looked at as configurations were evaluated, so that neither way costs more than twice what it would
+    alone. Hardly any target with a solution is not solved when they begin, but for those in singularities, where
+    descents are slow and near to the target: for these boxes come last.
     """
 
     def __init__(self, problem: IKProblem, refiner: Refiner) -> None:
@@ -26,19 +31,23 @@ class Exclusion:
         self._problem, self._refiner = problem.whole, refiner
         frames = range(len(problem.targets))
         self._boxes = [boxes for t in frames if (boxes := problem.boxes(t)) is not None]
-        self._stages = list(STAGES if problem.chain.n < MANY else STAGES[:-1])
+        self._most = FEW if problem.chain.n >= MANY else ENDLESS
 
     def go_on(self, ledger: Ledger) -> None:
         """Look at the boxes that are due after the evaluations that the search has taken so far."""
-        while self._stages and ledger.searched >= self._stages[0][0]:
-            _, most = self._stages.pop(0)
-            for boxes in self._boxes:
-                self._look(boxes, most, ledger)
+        for boxes in self._boxes:
+            self._look(boxes, self._due(ledger) - boxes.looked, ledger)
+
+    def _due(self, ledger: Ledger) -> int:
+        """How many boxes of a frame may have been looked at by now."""
+        searched, far = ledger.searched, ledger.cost > FAR
+        due = searched - (HEAD if far else TAIL) if searched >= FIRST else 0
+        return min(TIMES * searched if far and searched >= LONG else due, self._most)
 
     def _look(self, boxes: Boxes, most: int, ledger: Ledger) -> None:
         """Look at so many boxes of one frame, and descend from those that are too small to be split."""
         starts, end = 0, boxes.looked + most
-        while starts < STARTS and not boxes.done and not ledger.over():
+        while boxes.looked < end and starts < STARTS and not boxes.done and not ledger.over():
             before = boxes.looked
             small = boxes.look(min(end - before, CHUNK, ledger.left_for_boxes))
             ledger.add_boxes(boxes.looked - before)

@@ -23,6 +23,7 @@ class Ledger:
     Attributes:
         problem: What is searched for, and what costs are of.
         x: (n,) the best coordinates so far.
+        cost: Of ``x``, as the problem counts it.
         met: Whether they met the tolerances, by the kernels; Pinocchio has the last word.
         spent: Evaluations so far, those of boxes among them.
         proof: What proves that there is nothing to be found, if anything does.
@@ -46,7 +47,7 @@ class Ledger:
         self.problem = problem
         self._budget = budget
         self._began = began
-        self._cost = math.inf
+        self.cost = math.inf
         self._patience = patience
         self._boxes = 0
 
@@ -98,8 +99,8 @@ class Ledger:
             self.met, self.x = True, refinement.x
             return
         cost = float(self.problem.costs(refinement.x[None])[0])
-        if cost < self._cost:
-            self._cost, self.x = cost, refinement.x
+        if cost < self.cost:
+            self.cost, self.x = cost, refinement.x
 
     def add_boxes(self, looked: int) -> None:
         """Enter boxes that were looked at."""
@@ -111,8 +112,8 @@ class Ledger:
         if found.trace is not None:
             self.traces.append(found.trace + np.array([self.spent, 0.0]))
         self.spent += found.evaluations
-        if found.cost < self._cost:
-            self._cost, self.x = found.cost, found.x
+        if found.cost < self.cost:
+            self.cost, self.x = found.cost, found.x
 
     def _elapsed(self) -> float:
         return perf_counter() - self._began

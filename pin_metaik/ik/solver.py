@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import checked, instance
 from pin_metaik.errors import InvalidBudget, InvalidSetting, UnknownName
 from pin_metaik.ik.collect import collect
-from pin_metaik.ik.exclude import STAGES, Exclusion
+from pin_metaik.ik.exclude import FIRST, Exclusion
 from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.nullspace import slide
 from pin_metaik.ik.problem import IKProblem
@@ -156,6 +156,8 @@ class IKSolver:
         budget = Budget(evaluations=max(1, ledger.left(CHOICE_SHARE)), seconds=self.budget.seconds)
         problem, found, complete, spent = collect(problem, x0, rng, limit=CHOICE, apart=1e-2, budget=budget)
         ledger.spent += spent
+        if not len(found) and self._decides:
+            ledger.proof = complete
         if problem.world is not None:
             found = found[[problem.accepts(q) for q in problem.chain.q(found, base)]]
         if len(found):
@@ -186,7 +188,7 @@ class IKSolver:
         automatic = self.seeder == "auto" and self.select == "first" and self.budget.seconds is None
         if not automatic or not isinstance(dls, DLS):
             return None
-        first = min(STAGES[0][0], ENDLESS if evaluations is None else math.ceil(RESTART_SHARE * evaluations))
+        first = min(FIRST, ENDLESS if evaluations is None else math.ceil(RESTART_SHARE * evaluations))
         return np.array([dls.damping, PROGRESS, dls.iterations, first, DEFAULT_TOLERANCE, DEFAULT_TOLERANCE, first])
 
     def _restart(

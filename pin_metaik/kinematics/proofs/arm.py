@@ -21,7 +21,7 @@ Arrays: TypeAlias = tuple[Floats, Ints, Floats, Floats, Floats, Floats, Floats, 
 Free: TypeAlias = tuple[bool, bool, bool]  # which turns about the tip's axes x, y and z a target leaves free
 
 WHOLE: Free = (False, False, False)
-MEET = 1e-9  # m: a wrist is exact, or it is none
+MEET = 1e-5  # m: axes that miss a point by less meet, and what they miss it by is added to the tolerance
 APART = 1e-6  # least singular value at which three axes count as pointing different ways
 
 
@@ -157,7 +157,7 @@ def proof_arm(paths: Paths, limits: Limits, tip: int, free: Free) -> ProofArm | 
         path.tip,
         lower,
         upper,
-        np.array([_reach(path, knots, lower, upper)]),
+        np.array([_reach(path, knots, lower, upper), 0.0 if wrist is None else _miss(path, knots)]),
         np.array([int(wrist is not None)]),
     )
     return ProofArm(arrays, backwards, n)
@@ -209,6 +209,14 @@ def _wrist(path: Path, lower: Floats, upper: Floats) -> Floats | None:
         return None
     met: Floats = np.einsum("ki,ki->k", where - points, axes)
     return met
+
+
+def _miss(path: Path, knots: Floats) -> float:
+    """How far (m) turns of a wrist, the last three joints, may move its first axis' point as the tip sees it."""
+    frames = path.frames(np.zeros(int(path.wiring[:, 0].max()) + 1))[-4:-1]
+    points = frames[:, :3, 3] + knots[-3:, None] * frames[:, :3, 2]
+    first, second = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    return float(4.0 * first + 2.0 * second)  # about axis 2, by twice the distance; about axis 3, by twice both
 
 
 def _reach(path: Path, knots: Floats, lower: Floats, upper: Floats) -> float:

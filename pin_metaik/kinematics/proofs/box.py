@@ -31,7 +31,8 @@ class BoxArm(NamedTuple):
         tip: (12,) placement of the tip in the last joint frame.
         lower: (n,) limits of the coordinates, finite, rad or m.
         upper: (n,).
-        reach: (1,) greatest distance of any point from the tip and from each other, m.
+        reach: (2,) greatest distance of any point from the tip and from each other, m; and how far turns of the wrist
+            may move its point as the tip sees it, because its axes do not quite meet.
         wrist: (1,) 1 if the last three axes meet, each with a coordinate of its own; then these are never split, or, if
             it is 2, once all others are short.
     """

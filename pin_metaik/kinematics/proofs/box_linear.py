@@ -47,7 +47,7 @@ def excluded_to_first_order(
     P, there, R = vector(laid.points[at]), vector(laid.target_points[at]), laid.turn
     trace = R[0, 0] + R[1, 1] + R[2, 2]
     twist = min(math.sqrt(max(3.0 - trace, 0.0)), 1.0)  # |R - I|, or what bounds the terms without it
-    place, lean = near, aligned
+    place, lean = near + arm.reach[1] if place_alone else near, aligned
     before = after = slid = 0.0
     for i in range(S):
         here = i <= cut
