@@ -20,6 +20,7 @@ from pin_metaik.cli.versions import versions
 from pin_metaik.collision import CollisionWorld, load_scene, scene_names
 from pin_metaik.errors import InvalidSetting, InvalidTarget
 from pin_metaik.ik import REFINERS, IKResult, IKSolver, Target, solve_ik
+from pin_metaik.ik.solver import EVALUATIONS
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.pose import rpy_matrix
 from pin_metaik.optimize import ALGORITHMS, Budget
@@ -52,7 +53,7 @@ def solve(
     ] = None,
     seeder: Annotated[str, typer.Option(help=f"Where starts come from: {SEEDERS}.")] = "auto",
     refiner: Annotated[str, typer.Option(help=f"What refines them: {', '.join(REFINERS)} or none.")] = "dls",
-    evaluations: Annotated[int, typer.Option(help="Forward kinematics that may be spent.")] = 50_000,
+    evaluations: Annotated[int, typer.Option(help="Forward kinematics that may be spent.")] = EVALUATIONS,
     world: Annotated[
         str | None,
         typer.Option(

@@ -38,6 +38,11 @@ class Exclusion:
         for boxes in self._boxes:
             self._look(boxes, self._due(ledger) - boxes.looked, ledger)
 
+    def finish(self, ledger: Ledger) -> None:
+        """Look at all boxes that the budget has left, when the search has come to its end."""
+        for boxes in self._boxes:
+            self._look(boxes, min(ledger.left_for_boxes, self._most - boxes.looked), ledger)
+
     def _due(self, ledger: Ledger) -> int:
         """How many boxes of a frame may have been looked at by now."""
         searched, far = ledger.searched, ledger.cost > FAR
@@ -47,7 +52,7 @@ class Exclusion:
     def _look(self, boxes: Boxes, most: int, ledger: Ledger) -> None:
         """Look at so many boxes of one frame, and descend from those that are too small to be split."""
         starts, end = 0, boxes.looked + most
-        while boxes.looked < end and starts < STARTS and not boxes.done and not ledger.over():
+        while boxes.looked < end and starts < STARTS and not (boxes.done or ledger.decided or ledger.late()):
             before = boxes.looked
             small = boxes.look(min(end - before, CHUNK, ledger.left_for_boxes))
             ledger.add_boxes(boxes.looked - before)
@@ -55,7 +60,7 @@ class Exclusion:
                 ledger.proof = Proof.BOXES
             for box in small:
                 starts += 1
-                if len(self._problem.targets) == 1:
+                if len(self._problem.targets) == 1 and ledger.left():
                     start = box[None, : self._problem.chain.n]
                     ledger.add(self._refiner.refine(self._problem, start, ledger.left()))
             if boxes.looked == before:

@@ -74,13 +74,18 @@ class Ledger:
 
     @property
     def left_for_boxes(self) -> int:
-        """Boxes that may still be looked at: half of the budget at most."""
+        """Boxes that may still be looked at: two thirds of the budget at most."""
         total = self._budget.evaluations
-        return ENDLESS if total is None else max(0, min(total // 2 - self._boxes, total - self.spent))
+        return ENDLESS if total is None else max(0, min(2 * total // 3 - self._boxes, total - self.spent))
+
+    @property
+    def decided(self) -> bool:
+        """Whether the problem is solved, or proved to have no solution."""
+        return self.met or self.proof is not None
 
     def over(self, share: float = 1.0) -> bool:
-        """Whether the search is over: solved, proved to be in vain, or this share of the budget spent."""
-        return self.met or self.proof is not None or self.left(share) == 0 or self.late(share)
+        """Whether the search is over: decided, or this share of the budget spent."""
+        return self.decided or self.left(share) == 0 or self.late(share)
 
     def slice(self, share: float) -> Budget:
         """A budget for one round of seeding: this share of what is left."""

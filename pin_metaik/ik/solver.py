@@ -31,6 +31,7 @@ from pin_metaik.randomness import DEFAULT_SEED, Rng, as_generator
 
 Refine: TypeAlias = Callable[[IKProblem, NDArray[np.float64], int], Refinement]
 
+EVALUATIONS = 75_000  # of a search and its boxes, by default
 ELITE = 8  # points of a seeder's search that are refined
 SEEDER_SHARE = 0.25  # of the budget, for one round of the seeder before its elite is refined
 RESTART_SHARE = 0.8  # of a search, for restarts before the automatic solver turns to a seeder
@@ -58,14 +59,14 @@ class IKSolver:
         select: ``"first"`` solution found, or of all distinct ones that the budget allows to find, the ``"nearest"`` to
             ``q0``, the one of best ``"manipulability"``, or the one that keeps farthest from the ``"limits"``.
         trace: Whether to keep the seeder's convergence.
-        patience: Evaluations after which the automatic search ends although nothing is proved; half of the budget, if
-            that is more. The rest of the budget is for boxes (see ``Proof``). Of 13.7 million targets with a solution
-            none needed more than 25,000; 3,000 miss 1 of 2,500,000 random ones and 2 of 10,000 in a singularity.
+        patience: Evaluations after which the automatic search ends although nothing is proved, or a third of the
+            budget, if that is more; the rest of the budget is for boxes (see ``Proof``). Of 13.7 million targets with a
+            solution none needed more than 25,000; 3,000 miss 1 of 2,500,000 random ones, and 2 of 10,000 singular ones.
     """
 
     seeder: str | Metaheuristic | None = "auto"
     refiner: str | Refiner | None = "dls"
-    budget: Budget = field(default=Budget(evaluations=50_000))
+    budget: Budget = field(default=Budget(evaluations=EVALUATIONS))
     starts: int | None = None
     select: str = "first"
     trace: bool = False
@@ -112,8 +113,10 @@ class IKSolver:
         x0 = chain.x(base)
         aim = problem.whole if problem.loose else problem
         ledger = Ledger(aim, self.budget, began, x0, self._most if self._decides else None)
-        if self._decides:
+        exclusion = None
+        if self._decides and self._refiner is not None:
             ledger.proof = problem.refuted
+            exclusion = Exclusion(problem, self._refiner) if ledger.proof is None else None
         if first is not None:
             ledger.add(first)
         if chain.limits.rigid:  # there is nothing to search: it stands where it stands
@@ -121,9 +124,11 @@ class IKSolver:
         if self.select != "first" and not ledger.over():
             self._choose(problem, x0, base, rng, ledger)
         if self._refiner is not None and (self.seeder is None or self.seeder == "auto") and not ledger.over():
-            self._restart(problem, self._refiner, x0, rng, ledger, tried=0 if first is None else 1)
+            self._restart(problem, self._refiner, x0, rng, ledger, exclusion, tried=0 if first is None else 1)
         if self._seeder is not None and not ledger.over():
             self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
+        if exclusion is not None and not ledger.decided:
+            exclusion.finish(ledger)
         if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None and not chain.limits.rigid:
             ledger.add(self._refiner.settle(ledger.problem, ledger.x, ledger.left()))
         q = base.copy()
@@ -176,7 +181,7 @@ class IKSolver:
     def _most(self) -> int | None:
         """Evaluations that a search with boxes by turns may take."""
         total = self.budget.evaluations
-        return None if total is None else max(self.patience, total // 2)
+        return None if total is None else max(self.patience, total // 3)
 
     @cached_property
     def lane(self) -> NDArray[np.float64] | None:
@@ -192,7 +197,14 @@ class IKSolver:
         return np.array([dls.damping, PROGRESS, dls.iterations, first, DEFAULT_TOLERANCE, DEFAULT_TOLERANCE, first])
 
     def _restart(
-        self, problem: IKProblem, refiner: Refiner, x0: NDArray[np.float64], rng: Rng, ledger: Ledger, tried: int
+        self,
+        problem: IKProblem,
+        refiner: Refiner,
+        x0: NDArray[np.float64],
+        rng: Rng,
+        ledger: Ledger,
+        exclusion: Exclusion | None,
+        tried: int,
     ) -> None:
         """Refine from x0 (n,), then from random starts; ``tried`` says that the first batch of them has been.
 
@@ -204,7 +216,6 @@ class IKSolver:
         anywhere = refiner.refine
         if self._seeder is not None and isinstance(refiner, DLS):
             anywhere = refiner.refine_anywhere
-        exclusion = Exclusion(problem, refiner) if self._decides else None
 
         def refine(aim: IKProblem, first: Refine, batches: Iterator[NDArray[np.float64]], share: float) -> None:
             for starts in batches:
