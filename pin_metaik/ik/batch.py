@@ -149,7 +149,7 @@ def solve_ik_batch(
     if array is not None and settings is not None and k:
         poses, starts = _as_poses(array), drawn(chain, seed, 0, LANE)
         aligned = math.inf if array.ndim == 2 else settings[5]
-        settings = np.array([*settings[:5], aligned, 0.0])  # where a closed form has no branch, ``alone`` decides first
+        settings = np.array([*settings[:5], aligned, 0.0, *settings[7:]])  # without a branch ``alone`` decides
 
         def together(part: Rows) -> None:
             q, evaluations, goals = batch.q[part], batch.evaluations[part], poses[part]

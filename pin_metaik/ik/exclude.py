@@ -8,9 +8,9 @@ from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.refine import Refiner
 from pin_metaik.kinematics.proofs.boxes import Boxes
 
-FIRST = 300  # evaluations before the first boxes: none of 1,000,000 random targets of an arm in 2,800 needs more
+FIRST = 500  # evaluations before the first boxes; fewer than 1 of 10,000 random targets with a solution needs more
 FAR = 3e-3  # m and rad: where the nearest is farther away by then, there is mostly nothing to be found
-HEAD, TAIL = 200, 7_000  # evaluations for which no box is looked at, where the nearest is far and where it is near
+HEAD, TAIL = 400, 7_000  # evaluations for which no box is looked at, where the nearest is far and where it is near
 LONG, TIMES = 3_000, 10  # evaluations after which, where it is far, boxes are looked at ten at a time
 MANY, FEW = 9, 3_000  # joints from which on more boxes than these prove next to nothing: of talos' nine 2 of 18 targets
 CHUNK = 1_000  # boxes between two looks at the clock, where Ctrl-C is heard, too

@@ -30,6 +30,7 @@ from pin_metaik.randomness import Rng
 
 SOLVED, UNREACHABLE = IKStatus.SOLVED, IKStatus.UNREACHABLE
 SETTLE = np.array([STIFF, SETTLED, 100.0])  # how to come near to what is out of reach; see ``DLS.settle``
+AT_MIDDLE = 300.0  # evaluations, at most, for the middle of tolerances that are loose
 
 
 def solve_fast(
@@ -61,7 +62,9 @@ def solve_fast(
         else:
             return None
     if asked is not None:
-        settings = np.array([*settings[:4], near, aligned, settings[6]])
+        settings = np.array([*settings[:4], near, aligned, *settings[6:]])
+        if near > DEFAULT_TOLERANCE or DEFAULT_TOLERANCE < aligned < math.inf:
+            settings[3] = min(settings[3], AT_MIDDLE)
     oriented = aligned < math.inf
     lane = chain.pose_lane if oriented else chain.position_lane
     starts = lane.starts if rng is None else drawn(chain, rng, 0, LANE)

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import checked, instance
 from pin_metaik.errors import InvalidBudget, InvalidSetting, UnknownName
 from pin_metaik.ik.collect import collect
-from pin_metaik.ik.exclude import FIRST, Exclusion
+from pin_metaik.ik.exclude import FAR, FIRST, LONG, Exclusion
 from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.nullspace import slide
 from pin_metaik.ik.problem import IKProblem
@@ -193,8 +193,10 @@ class IKSolver:
         automatic = self.seeder == "auto" and self.select == "first" and self.budget.seconds is None
         if not automatic or not isinstance(dls, DLS):
             return None
-        first = min(FIRST, ENDLESS if evaluations is None else math.ceil(RESTART_SHARE * evaluations))
-        return np.array([dls.damping, PROGRESS, dls.iterations, first, DEFAULT_TOLERANCE, DEFAULT_TOLERANCE, first])
+        most = ENDLESS if evaluations is None else math.ceil(RESTART_SHARE * evaluations)
+        first, few = float(min(LONG, most)), float(min(FIRST, most))
+        tolerance = DEFAULT_TOLERANCE
+        return np.array([dls.damping, PROGRESS, dls.iterations, first, tolerance, tolerance, first, few, FAR**2])
 
     def _restart(
         self,

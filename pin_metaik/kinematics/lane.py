@@ -96,6 +96,7 @@ def go_on(
     task, guess, start, best, _ = laid_out(desk, bounds[0].shape[0])
     tasks = task.reshape(1, 26)
     descent, most = (settings[0], settings[1], int(settings[2])), int(settings[3])
+    few, far = int(settings[7]), settings[8]
     (spent, todo), met = begun, False
     if todo == SEARCH and rows is None and form.shape[0] > 0:
         most = min(most, int(settings[6]))
@@ -104,7 +105,8 @@ def go_on(
         spent += steps
     if not met:
         atlas = unpack_atlas(block)
-        spent += search(arm, tasks, rows, bounds, atlas, guess, starts, descent, most - spent, best, work, looks)[0]
+        patience = most - spent, few - spent, far
+        spent += search(arm, tasks, rows, bounds, atlas, guess, starts, descent, patience, best, work, looks)[0]
     write_end(best, entries, q)
     return spent
 
@@ -139,10 +141,11 @@ def solve_poses(
 ) -> None:
     """Search for the poses (k, 4, 4) of one tip, each on its own; with the rows ``POSITION``, for their positions.
 
-    ``block`` is the packed chain; ``settings`` (7,) are damping, progress, evaluations from one start and in all, the
-    tolerances, m and rad, and evaluations for a pose for which the closed form has no branch. q (k, nq) is where to
-    start from and what other joints keep, and gets the nearest to the target that was found: by the closed form, if the
-    arm has one, then by ``search``. What is proved to be out of reach is not searched for. ``evaluations`` (k,) gets
+    ``block`` is the packed chain; ``settings`` (9,) are damping, progress, evaluations from one start and in all, the
+    tolerances, m and rad, evaluations for a pose for which the closed form has no branch, and those after which a
+    search ends whose nearest is farther away than the last number: squared, m and rad. q (k, nq) is where to start from
+    and what other joints keep, and gets the nearest to the target that was found: by the closed form, if the arm has
+    one, then by ``search``. What is proved to be out of reach is not searched for. ``evaluations`` (k,) gets
     how many there were, or REFUSED.
     """
     S, n = sizes_of(block)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TypeAlias
+
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, Singles, inline, jit, shared
@@ -19,6 +21,9 @@ from pin_metaik.kinematics.guesses import (
     target_feature,
 )
 from pin_metaik.kinematics.kernels import PATHS, TURN, copy, nearest_turn
+
+# Evaluations in all, and after which a search ends whose nearest is farther than that: |r|^2.
+Patience: TypeAlias = tuple[int, int, float]
 
 
 @jit(f"Tuple((f8, b1))({PATHS}, f8[:,::1], i8[:,::1], f8[::1], f8[::1], f8[:,::1])")
@@ -61,12 +66,12 @@ def search(
     guess: Floats,
     starts: Floats,
     settings: Settings,
-    evaluations: int,
+    patience: Patience,
     best: Floats,
     work: Work,
     looks: Looks,
 ) -> tuple[int, int]:
-    """Descend from one start after the other until one meets the tolerances or the evaluations are spent.
+    """Descend from one start after the other until one meets the tolerances or patience is at its end.
 
     The starts are somebody's guess (n,), those that the atlas suggests, if there is one, and ``starts`` (s, n). The
     guess goes first when its pose is nearer to the target than the poses in the atlas, otherwise after them.
@@ -83,10 +88,11 @@ def search(
     lower, upper, _ = bounds
     for c in range(best.shape[0]):
         best[c] = min(max(guess[c], lower[c]), upper[c])
+    evaluations, few, far = patience
     spent = 0
     least = np.inf
     for k in range(1 + tried + starts.shape[0]):
-        if spent >= evaluations:
+        if spent >= evaluations or (spent >= few and least > far):
             break
         if k == own:
             start = guess
@@ -158,7 +164,7 @@ def descend(
         starts[0],
         starts[1:],
         (damping, progress, per_start),
-        evaluations,
+        (evaluations, evaluations, np.inf),
         best,
         workspace(n, rows, joints.shape[0]),
         lookup_space(n, tasks.shape[0]),
