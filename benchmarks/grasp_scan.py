@@ -2,9 +2,10 @@
 
     python benchmarks/grasp_scan.py panda --grasps 20
 
-Plain damped least squares from hundreds of random configurations; of an arm with seven joints at every step of the last
-of them, so that all of its self-motion is walked along, and between the steps where it collides least. Every solution is
-looked at by coal, pair by pair (``collision_truth.py``), until one is free. Slow, and asks nothing of the package.
+Plain damped least squares from hundreds of random configurations; of an arm with seven joints at every step of the
+last of them, so that all of its self-motion is walked along, and between the steps where it collides least. Every
+solution is looked at by coal, pair by pair (``collision_truth.py``), until one is free. Slow, and asks nothing of the
+package.
 """
 
 from __future__ import annotations

@@ -122,12 +122,15 @@ def test_errors_false_claims_and_overspending_are_told(results: Results) -> None
     assert trouble(results) is None
     bad = [row("gwo+dls", 0, 5), replace(row("gwo+dls", 1, 5), met=False), row("gwo+dls", 2, 1001)]
     bad.append(replace(row("mtde+dls", 3, None), error="ValueError: no"))
+    bad.append(replace(row("mtde+dls", 0, None), status="UNREACHABLE"))  # which gwo+dls met
+    bad.append(replace(row("mtde+dls", 4, None), status="UNREACHABLE"))  # which nobody met
     columns = table(trouble(Results(RECORD, bad)), "trouble")
-    assert columns["method"] == ["mtde+dls", "gwo+dls", "gwo+dls"]
-    assert [str(what).partition("trials ")[2] for what in columns["what"]] == [
-        "raised ValueError: no",
-        "claimed a solution that Pinocchio (or coal) does not confirm",
-        "spent more than was allowed",
+    assert columns["method"] == ["mtde+dls", "gwo+dls", "mtde+dls", "gwo+dls"]
+    assert [str(what).partition(" trials ")[::2] for what in columns["what"]] == [
+        ("1", "raised ValueError: no"),
+        ("1", "claimed a solution that Pinocchio (or coal) does not confirm"),
+        ("1", "said UNREACHABLE of a target that was met"),
+        ("1", "spent more than was allowed"),
     ]
 
 
