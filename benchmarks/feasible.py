@@ -31,7 +31,7 @@ FAMILIES = (
     "some at zero",
     "singular",
 )
-SINGULAR = 32  # singular configurations of an arm, found once
+SINGULAR = 8  # singular configurations of an arm, found once
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ def _turn(rng: np.random.Generator) -> Floats:
 def singular_ones(chain: mik.Chain) -> Floats:
     """Singular coordinates (k, n) of an arm; none, if it has none."""
     try:
-        return singular(chain, SINGULAR, np.random.default_rng(0), pool=SINGULAR)
+        return singular(chain, SINGULAR, np.random.default_rng(0))
     except NoTask:
         return np.empty((0, chain.n))
 

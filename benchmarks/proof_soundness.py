@@ -73,10 +73,10 @@ def boxes(seed: int, count: int) -> Counts:
     while looked < count:
         chain = named(str(rng.choice(NAMED))) if rng.random() < 0.5 else random_chain(rng)
         arms += 1
+        by_aim = {oriented: proof_arm(chain.paths, chain.limits, 0, oriented) for oriented in (True, False)}
         for _ in range(20):
             target, oriented = feasible(chain, rng), bool(rng.random() < 0.8)
-            arm = proof_arm(chain.paths, chain.limits, 0, oriented)
-            if arm is not None:
+            if (arm := by_aim[oriented]) is not None:
                 for excluded in halved(arm, target, oriented, rng):
                     looked += 1
                     wrong += excluded
