@@ -233,7 +233,7 @@ def grasps(count: int, seed: int = 0) -> Floats:
 
 
 @cache
-def shelf(robot: str) -> tuple[mik.Chain, mik.CollisionWorld]:
+def shelf_of(robot: str) -> tuple[mik.Chain, mik.CollisionWorld]:
     """A robot before the shelf."""
     loaded = mik.load_robot(robot)
     return mik.Chain(loaded.model, loaded.frame), mik.CollisionWorld(loaded, load_scene("shelf"))
@@ -241,7 +241,7 @@ def shelf(robot: str) -> tuple[mik.Chain, mik.CollisionWorld]:
 
 @cache
 def _scan(robot: str) -> Scan:
-    return Scan.of(mik.load_robot(robot), shelf(robot)[1])
+    return Scan.of(mik.load_robot(robot), shelf_of(robot)[1])
 
 
 def decide(robot: str, number: int, pose: Floats) -> Verdict:
