@@ -123,8 +123,10 @@ class PlainArm:
         turn = np.where(sine > 1e-12, angle / np.maximum(sine, 1e-12), 1.0)[:, None] * axis
         return np.concatenate([pose[:3, 3] - position, turn], axis=1), J
 
-    def descend(self, X: Floats, pose: Floats, free: NDArray[np.bool_]) -> Floats:
+    def descend(self, X: Floats, pose: Floats, free: NDArray[np.bool_], near: float = TOLERANCE) -> Floats:
         """Solutions (l, n) that damped least squares come to from X (k, n), moving the ``free`` joints (n,) alone.
+
+        They are within ``near`` (m and rad) of the pose (4, 4).
 
         Joints that a step would take past a limit are held there, and the step is worked out once more without them.
         """
@@ -132,7 +134,7 @@ class PlainArm:
         for step in range(STEPS):
             e, J = self.errors(X, pose)
             size = np.linalg.norm(e, axis=1)
-            there = (np.linalg.norm(e[:, :3], axis=1) < TOLERANCE) & (np.linalg.norm(e[:, 3:], axis=1) < TOLERANCE)
+            there = (np.linalg.norm(e[:, :3], axis=1) < near) & (np.linalg.norm(e[:, 3:], axis=1) < near)
             found.append(X[there])
             kept = ~there
             if step % LOOK == LOOK - 1:

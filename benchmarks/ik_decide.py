@@ -1,6 +1,6 @@
 """Every target solved or proved unreachable: how many, how quickly, and whether the proofs can be believed.
 
-    python benchmarks/ik_decide.py [arms margins soundness shelf twice starts] [--targets 200] [--grasps 300] ...
+    python benchmarks/ik_decide.py [arms margins complete soundness shelf twice starts] [--targets 200] ...
 
 Writes the sections named, default all, into the page, and leaves its others as they are; each says by which command it
 was measured, when and on what machine. All questions go through ``solve_ik`` and ``solve_ik_batch``, one thread unless
@@ -20,7 +20,7 @@ from datetime import date
 from importlib.metadata import version
 from pathlib import Path
 
-from ik_decide_arms import arms, margins, starts
+from ik_decide_arms import arms, complete, margins, starts
 from ik_decide_grasps import shelf, twice
 from proof_soundness import KINDS, counted
 
@@ -47,6 +47,7 @@ def soundness(options: argparse.Namespace) -> list[str]:
 SECTIONS: dict[str, tuple[str, Callable[[argparse.Namespace], list[str]]]] = {
     "arms": ("Random orientations at reachable positions", arms),
     "margins": ("By margin", margins),
+    "complete": ("All solutions", complete),
     "soundness": ("Whether a proof is ever wrong", soundness),
     "shelf": ("Grasps on a shelf", shelf),
     "twice": ("The same twice", twice),

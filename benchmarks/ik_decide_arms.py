@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
+from grasp_scan import PlainArm
 from numpy.typing import NDArray
 from proof_soundness import CLOSED, OFF, named
 
@@ -21,6 +22,8 @@ WARM = 20  # targets of another seed before anything is timed
 MARGINS = (0.1, 0.03, 0.01, 1e-3, 1e-4, 3e-5)  # m or rad
 BY_MARGIN = ("ur5", "puma560", "talos_arm", "aerial_arm", "panda", "xarm7", "pr2", "tiago", "baxter")
 EACH = 25  # targets of an arm at a margin
+ALL_OF = ("ur5", "puma560", "talos_arm")
+DESCENTS, APART = 2_000, 1e-2
 SEEDED = ("ur5", "rv7fl", "panda", "talos_arm", "tiago")
 ROUNDS = 15  # of the three ways to give random numbers, by turns
 
@@ -194,6 +197,42 @@ def beyond(near: pin.SE3, far: pin.SE3, margin: float) -> Floats:
     step, turn = far.translation - near.translation, pin.log3(near.rotation.T @ far.rotation)
     share = margin / max(np.linalg.norm(step), np.linalg.norm(turn))
     return np.array(pin.SE3(near.rotation @ pin.exp3(share * turn), near.translation + share * step).homogeneous)
+
+
+def complete(options: argparse.Namespace) -> list[str]:
+    """How often ``solve_ik_all`` says that it has them all, and whether plain descents find others."""
+    lines = [
+        f"{options.targets} random poses an arm, `solve_ik_all`, and from {DESCENTS:,} random configurations each the "
+        "plain descents of `benchmarks/grasp_scan.py`, to 1e-9. *Outside*: solutions of these that differ by more than "
+        f"{APART:g} rad in some joint, whole turns aside, from all of a set that is called complete.",
+        "",
+        "| arm | called complete | solutions | found by descents | outside | median, ms | 99 % |",
+        "|---|---:|---:|---:|---:|---:|---:|",
+    ]
+    for robot in ALL_OF:
+        chain, arm, rng = named(robot), PlainArm.of(named(robot).model, named(robot).frames[0]), _rng(robot, 4)
+        times, certain, have, others, outside = [], 0, 0, 0, 0
+        for x in chain.box.sample(rng, options.targets):
+            pose = chain.poses(x)[0, 0]
+            began = time.process_time()
+            found = mik.solve_ik_all(chain, pose)
+            times.append(1e3 * (time.process_time() - began))
+            X = arm.descend(rng.uniform(arm.lower, arm.upper, (DESCENTS, chain.n)), pose, np.ones(chain.n, bool), 1e-9)
+            new = _apart(X, found.x)
+            others, have, certain = others + len(X), have + len(found), certain + found.complete
+            outside += int(new.sum()) if found.complete else 0
+        ms = np.array(times)
+        lines.append(
+            f"| {robot} | {certain / options.targets:.1%} | {have:,} | {others:,} | {outside} "
+            f"| {_quantile(ms, 0.5)} | {_quantile(ms, 0.99)} |"
+        )
+    return lines
+
+
+def _apart(X: Floats, known: Floats) -> NDArray[np.bool_]:
+    """Which of X (k, n) differ from all that are known (s, n)."""
+    away = (X[:, None] - known[None] + np.pi) % (2.0 * np.pi) - np.pi
+    return np.asarray((np.abs(away).max(axis=2) > APART).all(axis=1))
 
 
 def starts(options: argparse.Namespace) -> list[str]:
