@@ -50,7 +50,7 @@ def solve_ik(
         InvalidTarget: If the target is not a pose, position or orientation.
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
         InvalidBounds: If a joint of the chain has no finite range to search in.
-        InvalidSetting: If the world is another model's than the chain, or ``rng`` is neither.
+        InvalidSetting: If the world is another model's than the chain, or ``rng`` is not one of these.
     """
     seed = as_seed(rng)
     solver = DEFAULT_SOLVER if solver is None else solver
