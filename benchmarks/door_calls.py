@@ -1040,6 +1040,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "compare.Case.task": lambda: {"chain": chain(), "world": None, "rng": rng()},
     "compare.Replay.lines": dict,
     "compare.Results.of": lambda: {"robot": "ur5", "case": "random", "method": "lm"},
+    "compare.Results.hopeless": lambda: {"case": "random"},
     "compare.Results.pairs": lambda: {"case": "random"},
     "compare.Results.spent": lambda: {"case": "random", "method": "lm"},
     "compare.Results.costs": lambda: {"case": "random", "robot": "ur5"},

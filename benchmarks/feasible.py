@@ -1,4 +1,4 @@
-"""Feasible targets at their worst: arms of all kinds, configurations at limits, poses at the edge of the tolerance.
+"""Feasible targets at their worst: arms of all kinds, corners and singularities, poses at the edge of the tolerance.
 
 What is called a proof has to hold for all of them, so this is what proofs are tried against.
 """
@@ -6,19 +6,32 @@ What is called a proof has to hold for all of them, so this is what proofs are t
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
 import pin_metaik as mik
+from pin_metaik.compare.case import NoTask
+from pin_metaik.compare.cases.singular import singular
 
 Floats = NDArray[np.float64]
 
 TURNS = (np.eye(3), *(pin.utils.rotate(axis, sign * np.pi / 2) for axis in "xy" for sign in (1.0, -1.0)))
 TURNING = pin.JointModelRX, pin.JointModelRY, pin.JointModelRZ
 SLIDING = pin.JointModelPX, pin.JointModelPY, pin.JointModelPZ
-FAMILIES = "random", "some at limits", "one at a limit", "right angles", "half right angles", "some at zero"
+FAMILIES = (
+    "random",
+    "some at limits",
+    "all at limits",
+    "one at a limit",
+    "right angles",
+    "half right angles",
+    "some at zero",
+    "singular",
+)
+SINGULAR = 8  # singular configurations of an arm, found once
 
 
 @dataclass(frozen=True)
@@ -76,6 +89,39 @@ def _random_model(rng: np.random.Generator) -> tuple[pin.Model, list[tuple[int, 
     return model, [pair for pair in reversed(followers) if pair[0] not in leaders]
 
 
+def random_closed_form(rng: np.random.Generator) -> mik.Chain:
+    """An arm of six joints that has a closed form: a wrist behind two parallel axes, or three parallel axes and two."""
+    while True:
+        model, parent, three = pin.Model(), 0, rng.random() < 0.5
+        turns = [np.eye(3) if i in ((2, 3) if three else (2,)) else _turn(rng) for i in range(6)]
+        for i, turn in enumerate(turns):
+            way = 0.3 * rng.normal(size=3) * (rng.random(3) < 0.6)
+            if i == 5 or (i == 4 and not three):
+                way = np.array([0.0, 0.0, way[2] if i == 4 else 0.0])  # along the axis before: the axes meet
+            span = rng.uniform(0.3, 3.2, 2) if rng.random() < 0.7 else (6.3, 6.3)
+            bounds = (np.array([bound]) for bound in (10.0, 10.0, -span[0], span[1]))
+            parent = model.addJoint(parent, pin.JointModelRZ(), pin.SE3(turn, way), f"joint_{i}", *bounds)
+        tip = pin.SE3(pin.exp3(rng.normal(size=3)), 0.2 * rng.normal(size=3))
+        model.addFrame(pin.Frame("tip", parent, 0, tip, pin.FrameType.OP_FRAME))
+        chain = mik.Chain(model, "tip")
+        if len(chain.form):
+            return chain
+
+
+def _turn(rng: np.random.Generator) -> Floats:
+    """From one axis to the next: mostly a right angle."""
+    return np.array(TURNS[rng.integers(1, len(TURNS))] if rng.random() < 0.6 else pin.exp3(rng.normal(size=3)))
+
+
+@lru_cache(maxsize=64)
+def singular_ones(chain: mik.Chain) -> Floats:
+    """Singular coordinates (k, n) of an arm; none, if it has none."""
+    try:
+        return singular(chain, SINGULAR, np.random.default_rng(0))
+    except NoTask:
+        return np.empty((0, chain.n))
+
+
 def coordinates(chain: mik.Chain, family: str, rng: np.random.Generator) -> Floats:
     """Coordinates (n,) of a family inside the limits, angles within one turn."""
     box = chain.limits.one_turn().box()
@@ -83,6 +129,8 @@ def coordinates(chain: mik.Chain, family: str, rng: np.random.Generator) -> Floa
     x = rng.uniform(lower, upper)
     if family == "some at limits":
         x = np.where(rng.random(chain.n) < 0.5, np.where(rng.random(chain.n) < 0.5, lower, upper), x)
+    elif family == "all at limits":
+        x = np.where(rng.random(chain.n) < 0.5, lower, upper)
     elif family == "one at a limit":
         c = rng.integers(chain.n)
         x[c] = rng.choice([lower[c], upper[c]])
@@ -91,6 +139,8 @@ def coordinates(chain: mik.Chain, family: str, rng: np.random.Generator) -> Floa
         x = np.clip(step * np.round(x / step), lower, upper)
     elif family == "some at zero":
         x = np.where(rng.random(chain.n) < 0.3, np.clip(0.0, lower, upper), x)
+    elif family == "singular" and len(singular_ones(chain)):
+        x = np.clip(rng.choice(singular_ones(chain)), lower, upper)
     return x
 
 

@@ -23,5 +23,25 @@ def as_generator(rng: Rng | tuple[int, ...]) -> np.random.Generator:
     try:
         return np.random.default_rng(rng)
     except (TypeError, ValueError):
-        given = rng[0] if isinstance(rng, tuple) else rng
-        raise InvalidSetting(f"rng is a seed of at least 0, a numpy Generator or None, got {given!r}") from None
+        raise _no_rng(rng[0] if isinstance(rng, tuple) else rng) from None
+
+
+def as_seed(rng: Rng) -> int | None:
+    """The seed itself, or None; of a generator one number of 62 bits, drawn from it: it is one draw on afterwards.
+
+    Who asks a search needs to know how far its generator will be, and that cannot depend on how hard the search is.
+
+    Raises:
+        InvalidSetting: If it is neither.
+    """
+    if rng is None or (type(rng) is int and rng >= 0):
+        return rng
+    if isinstance(rng, np.random.Generator):
+        return rng.bit_generator.random_raw() >> 2  # what ``integers(2**62)`` gives, in a sixth of its time
+    if isinstance(rng, (int, np.integer)) and rng >= 0:
+        return int(rng)
+    raise _no_rng(rng)
+
+
+def _no_rng(given: object) -> InvalidSetting:
+    return InvalidSetting(f"rng is a seed of at least 0, a numpy Generator or None, got {given!r}")

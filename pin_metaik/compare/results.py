@@ -13,6 +13,7 @@ from pin_metaik.arguments import checked
 from pin_metaik.compare.record import CaseRecord, Record
 from pin_metaik.compare.statistics import Pair, compare_all, wilson
 from pin_metaik.compare.trial import Trial
+from pin_metaik.ik import IKStatus
 
 Array = NDArray[np.float64]
 
@@ -105,12 +106,19 @@ class Results:
     def costs(self, case: str, robot: str | None = None) -> Array:
         """Costs (b, k) of the methods that can be ranked, on every task of a case that all of them tried.
 
-        A trial costs its evaluations, at least 1, if it solved the task, otherwise ten times what was allowed; several
-        seeds are taken together by the geometric mean.
+        A trial costs its evaluations, at least 1, if it solved the task, otherwise ten times what was allowed; a right
+        UNREACHABLE costs 1, as what is spent beside it goes into the nearest pose. Several seeds are taken together by
+        the geometric mean.
         """
         if (case, robot) not in self._costs:
             self._costs[case, robot] = self._table(case, robot)
         return self._costs[case, robot]
+
+    @checked
+    def hopeless(self, case: str) -> bool:
+        """Whether every success in a case is a right UNREACHABLE: then it says nothing of searches."""
+        ends = {trial.status for trial in self.of(case=case) if trial.solved}
+        return ends == {IKStatus.UNREACHABLE}
 
     @checked
     def pairs(self, case: str) -> list[Pair]:
@@ -149,7 +157,9 @@ class Results:
 
 
 def cost(trial: Trial) -> float:
-    """What a trial costs: its evaluations, or ten times what was allowed."""
+    """What a trial costs: its evaluations, or ten times what was allowed; a right no costs one."""
+    if trial.solved and trial.status == IKStatus.UNREACHABLE:
+        return 1.0
     if trial.solved and trial.evaluations is not None:
         return max(1.0, float(trial.evaluations))
     return PENALTY * trial.allowed

@@ -25,7 +25,7 @@ from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import LANE, Chain
 from pin_metaik.optimize.settings import whole
-from pin_metaik.randomness import Rng
+from pin_metaik.randomness import Rng, as_seed
 
 Rows: TypeAlias = slice | NDArray[np.int64]
 
@@ -109,7 +109,8 @@ def solve_ik_batch(
         solver: How to search; default ``IKSolver()``.
         world: What must not collide.
         workers: Threads; default: one a core. The answers do not depend on it.
-        rng: Seed or generator of every random choice; ``None`` is a fixed seed.
+        rng: Seed or generator of every random choice; ``None`` is a fixed seed. A generator gives the whole batch one
+            seed.
 
     Raises:
         InvalidTarget: If a target is none; its number is named.
@@ -122,7 +123,7 @@ def solve_ik_batch(
     check_world(chain, world)
     solver = DEFAULT_SOLVER if solver is None else solver
     instance(IKSolver, solver=solver)
-    seed = int(rng.integers(2**62)) if isinstance(rng, np.random.Generator) else rng
+    seed = as_seed(rng)
     array = _as_array(targets)
     asked = cast(Sequence[TargetLike], targets) if array is None else array
     k = len(asked)

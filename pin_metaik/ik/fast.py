@@ -26,17 +26,21 @@ from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import DEFAULT_TOLERANCE, Target
 from pin_metaik.kinematics import LANE, Chain
 from pin_metaik.kinematics.closed_form import DESCEND, DONE, SEARCH
-from pin_metaik.randomness import Rng
 
 SOLVED, UNREACHABLE = IKStatus.SOLVED, IKStatus.UNREACHABLE
 SETTLE = np.array([STIFF, SETTLED, 100.0])  # how to come near to what is out of reach; see ``DLS.settle``
+NO_STARTS = np.empty((0, 0))
 AT_MIDDLE = 300.0  # evaluations, at most, for the middle of tolerances that are loose
 
 
 def solve_fast(
-    chain: Chain, target: object, q0: ArrayLike | None, solver: IKSolver, rng: Rng
+    chain: Chain, target: object, q0: ArrayLike | None, solver: IKSolver, seed: int | None
 ) -> IKResult | Refinement | None:
-    """The result; where the first starts do not solve it, what they came to; None for what the lane cannot take."""
+    """The result; where the first starts do not decide, what they came to; None for what the lane cannot take.
+
+    Starts of a seed are drawn for the few targets that the closed form, q0 and the atlas leave: to draw them takes
+    longer than to solve most. With them it begins again, and ends as if they had been there from the beginning.
+    """
     began = perf_counter()
     settings = solver.lane
     if settings is None or not chain.has_lane:
@@ -67,37 +71,38 @@ def solve_fast(
             settings[3] = min(settings[3], AT_MIDDLE)
     oriented = aligned < math.inf
     lane = chain.pose_lane if oriented else chain.position_lane
-    starts = lane.starts if rng is None else drawn(chain, rng, 0, LANE)
     given = chain.reference if q0 is None else q0
-    try:
-        q = given.copy() if isinstance(given, np.ndarray) else np.array(given, dtype=float)
-        todo, spent, proof = DESCEND, 1, None
-        if lane.solve_directly is not None:
-            todo, position, quaternion = lane.solve_directly(lane.block, matrix, q)
-            if todo == SEARCH:
-                proof = refuted(chain, matrix, near, aligned, q)
-        if todo != DONE and proof is None:
-            spent, position, quaternion = lane.solve_pose(lane.block, lane.rows, starts, settings, matrix, q)
-            if spent == 0:
-                proof = Proof.REACH
-        if proof is not None:
-            spent += chain.kernels.settle_pose(lane.block, lane.rows, SETTLE, matrix, q)
-    except (TypeError, ValueError, OverflowError):  # whatever it is, the long way takes it or says what is wrong
-        return None
-    if spent < 0:
-        return None
-    place = pin.SE3ToXYZQUATtuple(chain.tip.place(q))
-    distance, chord = math.dist(place[:3], position), math.dist(place[3:], quaternion)
-    if chord > 1.0:  # an orientation has two quaternions
-        chord = min(chord, math.dist(place[3:], [-v for v in quaternion]))
-    angle = 4.0 * math.asin(0.5 * chord) if oriented else 0.0  # of small angles exact, unlike a cosine
-    met = distance <= near and angle <= aligned
-    if not met and proof is None:
-        return Refinement(chain.x(q), False, spent)
-    parts, took = (position, quaternion) if asked is None else None, perf_counter() - began
-    if met:
-        return IKResult(q, SOLVED, distance, angle, spent, took, chain, asked, None, None, (), None, None, parts)
-    return IKResult(q, UNREACHABLE, distance, angle, spent, took, chain, asked, None, None, (), proof, None, parts)
+    starts = lane.starts if seed is None else NO_STARTS
+    while True:
+        try:
+            q = given.copy() if isinstance(given, np.ndarray) else np.array(given, dtype=float)
+            todo, spent, proof = DESCEND, 1, None
+            if lane.solve_directly is not None:
+                todo, position, quaternion = lane.solve_directly(lane.block, matrix, q)
+                if todo == SEARCH:
+                    proof = refuted(chain, matrix, near, aligned, q)
+            if todo != DONE and proof is None:
+                spent, position, quaternion = lane.solve_pose(lane.block, lane.rows, starts, settings, matrix, q)
+                proof = Proof.REACH if spent == 0 else None
+            if proof is not None:
+                spent += chain.kernels.settle_pose(lane.block, lane.rows, SETTLE, matrix, q)
+        except (TypeError, ValueError, OverflowError):  # whatever it is, the long way takes it or says what is wrong
+            return None
+        if spent < 0:
+            return None
+        place = pin.SE3ToXYZQUATtuple(chain.tip.place(q))
+        distance, chord = math.dist(place[:3], position), math.dist(place[3:], quaternion)
+        if chord > 1.0:  # an orientation has two quaternions
+            chord = min(chord, math.dist(place[3:], [-v for v in quaternion]))
+        angle = 4.0 * math.asin(0.5 * chord) if oriented else 0.0  # of small angles exact, unlike a cosine
+        met = distance <= near and angle <= aligned
+        if met or proof is not None:
+            status, proof = (SOLVED, None) if met else (UNREACHABLE, proof)
+            parts, took = (position, quaternion) if asked is None else None, perf_counter() - began
+            return IKResult(q, status, distance, angle, spent, took, chain, asked, None, None, (), proof, None, parts)
+        if starts is not NO_STARTS:  # all has been tried
+            return Refinement(chain.x(q), False, spent)
+        starts = drawn(chain, seed, 0, LANE)
 
 
 def refuted(

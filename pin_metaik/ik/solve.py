@@ -15,7 +15,7 @@ from pin_metaik.ik.result import IKResult
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
-from pin_metaik.randomness import Rng, as_generator
+from pin_metaik.randomness import Rng, as_seed
 
 
 def solve_ik(
@@ -41,7 +41,7 @@ def solve_ik(
             solver's solution does, others are searched for, by damped least squares whatever its refiner, then by
             pushing them out of collision, and by the solver's seeder.
         rng: Seed or generator of every random choice; ``None`` is a fixed seed, so that the same call gives the same
-            answer.
+            answer. A generator gives one number as the seed: it is one draw on, however hard the target is.
 
     Returns:
         The result: check ``result.success``. A target out of reach is a result too, with the nearest pose found.
@@ -50,20 +50,20 @@ def solve_ik(
         InvalidTarget: If the target is not a pose, position or orientation.
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
         InvalidBounds: If a joint of the chain has no finite range to search in.
-        InvalidSetting: If the world is another model's than the chain.
+        InvalidSetting: If the world is another model's than the chain, or ``rng`` is not one of these.
     """
+    seed = as_seed(rng)
     solver = DEFAULT_SOLVER if solver is None else solver
     try:
         if chain.held and q0 is not None:
             chain = chain.at(q0)
-        fast = solve_fast(chain, target, q0, solver, rng)
+        fast = solve_fast(chain, target, q0, solver, seed)
     except (
         AttributeError,
         TypeError,
     ):  # told here, where looking costs a quick solve nothing
         instance(Chain, chain=chain)
         instance(IKSolver, solver=solver)
-        as_generator(rng)
         raise
     if world is not None:
         instance(CollisionWorld, world=world)
@@ -71,5 +71,5 @@ def solve_ik(
         result = fast
     else:
         choice = None if solver.select == "first" else world  # one chooses among the solutions that are clear
-        result = solver.solve(IKProblem.of(chain, target, choice), q0, rng, first=fast)
-    return result if world is None else keep_clear(result, q0, solver, world, rng)
+        result = solver.solve(IKProblem.of(chain, target, choice), q0, seed, first=fast)
+    return result if world is None else keep_clear(result, q0, solver, world, seed)

@@ -15,6 +15,13 @@ from pin_metaik.compare.cases.jacobians import jacobians
 
 ROBOTS = ["panda", "ur5", "rv7fl", "kinova", "pr2"]
 COUNT = 5
+OUT_BY = [  # m
+    ("just_out_of_reach", 1e-3, 5e-2),
+    ("out_by_0.1mm", 1e-4, 1e-4),
+    ("out_by_1mm", 1e-3, 1e-3),
+    ("out_by_1cm", 1e-2, 1e-2),
+    ("out_by_10cm", 1e-1, 1e-1),
+]
 
 
 def tasks(case: Case, robot: str) -> list[Task]:
@@ -96,11 +103,35 @@ def test_from_the_boundary_no_joint_takes_the_tip_farther(robot: str) -> None:
 
 
 @pytest.mark.parametrize("robot", ROBOTS)
-def test_what_is_just_out_of_reach_is_by_a_few_centimetres_and_must_be_told(robot: str) -> None:
-    case = CASES["just_out_of_reach"]
-    for task in tasks(case, robot):
+@pytest.mark.parametrize(("name", "least", "most"), OUT_BY)
+def test_what_is_out_of_reach_is_by_the_length_of_its_case(name: str, least: float, most: float, robot: str) -> None:
+    for task in tasks(CASES[name], robot):
         gap = task.chain.reach(0, oriented=True).gap(task.targets[0])
-        assert 0.0009 < gap < 0.0501
+        assert least - 2e-9 < gap <= most  # m; a bound allows 1e-9 for rounding
+        assert mik.solve_ik(task.chain, task.targets[0]).status is mik.IKStatus.UNREACHABLE
+
+
+@pytest.mark.parametrize("robot", [*ROBOTS, "so100"])
+def test_what_has_no_solution_is_not_seen_by_the_span_of_the_links_and_not_solved_by_a_long_search(robot: str) -> None:
+    for task in tasks(CASES["no_solution"], robot):
+        assert task.chain.reach(0, oriented=True).gap(task.targets[0]) == 0.0
+        assert mik.solve_ik(task.chain, task.targets[0].translation).success
+        long = mik.IKSolver(None, "lm", mik.Budget(evaluations=20_000))
+        assert not mik.solve_ik(task.chain, task.targets[0], solver=long).success
+
+
+def test_of_an_arm_that_meets_every_orientation_there_is_no_task_without_solution(monkeypatch) -> None:
+    case = CASES["no_solution"]
+    chain = case.chain(mik.load_robot("human"), np.random.default_rng(0))
+    monkeypatch.setattr("pin_metaik.compare.cases.no_solution.VAIN", 2)
+    with pytest.raises(NoTask, match="none is proved"):
+        case.draw(chain, np.random.default_rng(0))
+
+
+@pytest.mark.parametrize("name", ["no_solution", *(name for name, *_ in OUT_BY)])
+def test_where_nothing_meets_the_target_only_a_no_is_a_success(name: str) -> None:
+    case = CASES[name]
+    for task in tasks(case, "ur5"):
         anywhere = task.chain.box.sample(np.random.default_rng(0), 1)
         assert case.judge(task, attempt(task, anywhere, "UNREACHABLE"))
         assert not case.judge(task, attempt(task, anywhere, "OUT_OF_TOLERANCE"))

@@ -63,6 +63,14 @@ def test_an_unsolved_task_costs_ten_budgets_and_a_free_answer_one_evaluation() -
     assert cost(row("gwo+dls", 0, 0)) == 1.0
 
 
+def test_all_who_rightly_say_no_rank_alike_and_that_says_nothing_of_seeds(results: Results) -> None:
+    told = [replace(t, met=False, claimed=False, status="UNREACHABLE") for t in results.trials if t.solved]
+    said = Results(results.record, told)
+    assert_array_equal(said.costs("random"), 1.0)
+    assert said.hopeless("random") and not results.hopeless("random")
+    assert seeds_against_restarts(said) is None
+
+
 def test_seeds_are_taken_together_by_the_geometric_mean_and_unfinished_tasks_are_left_out() -> None:
     suite = Suite(("ur5",), ("random",), ("lm", "dls"), targets=3, seeds=2)
     trials = [row(m, 0, e, seed=s) for m, pair in (("lm", (10, 1000)), ("dls", (20, 20))) for s, e in enumerate(pair)]
@@ -122,12 +130,15 @@ def test_errors_false_claims_and_overspending_are_told(results: Results) -> None
     assert trouble(results) is None
     bad = [row("gwo+dls", 0, 5), replace(row("gwo+dls", 1, 5), met=False), row("gwo+dls", 2, 1001)]
     bad.append(replace(row("mtde+dls", 3, None), error="ValueError: no"))
+    bad.append(replace(row("mtde+dls", 0, None), status="UNREACHABLE"))  # which gwo+dls met
+    bad.append(replace(row("mtde+dls", 4, None), status="UNREACHABLE"))  # which nobody met
     columns = table(trouble(Results(RECORD, bad)), "trouble")
-    assert columns["method"] == ["mtde+dls", "gwo+dls", "gwo+dls"]
-    assert [str(what).partition("trials ")[2] for what in columns["what"]] == [
-        "raised ValueError: no",
-        "claimed a solution that Pinocchio (or coal) does not confirm",
-        "spent more than was allowed",
+    assert columns["method"] == ["mtde+dls", "gwo+dls", "mtde+dls", "gwo+dls"]
+    assert [str(what).partition(" trials ")[::2] for what in columns["what"]] == [
+        ("1", "raised ValueError: no"),
+        ("1", "claimed a solution that Pinocchio (or coal) does not confirm"),
+        ("1", "said UNREACHABLE of a target that was met"),
+        ("1", "spent more than was allowed"),
     ]
 
 

@@ -11,6 +11,8 @@ from pin_metaik.compare.cases.five_dof import FIVE_DOF
 from pin_metaik.compare.cases.just_out_of_reach import JUST_OUT_OF_REACH
 from pin_metaik.compare.cases.minimal_displacement import MINIMAL_DISPLACEMENT
 from pin_metaik.compare.cases.near_limit import NEAR_LIMIT
+from pin_metaik.compare.cases.no_solution import NO_SOLUTION
+from pin_metaik.compare.cases.out_by import OUT_BY
 from pin_metaik.compare.cases.path import PATH
 from pin_metaik.compare.cases.random_poses import RANDOM
 from pin_metaik.compare.cases.singular import SINGULAR_POSES
@@ -21,7 +23,9 @@ CASES: dict[str, Case] = {
     "at_limits": AT_LIMITS,
     "singular": SINGULAR_POSES,
     "boundary": BOUNDARY,
+    "no_solution": NO_SOLUTION,
     "just_out_of_reach": JUST_OUT_OF_REACH,
+    **OUT_BY,
     "minimal_displacement": MINIMAL_DISPLACEMENT,
     "cluttered": CLUTTERED,
     "five_dof": FIVE_DOF,

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pin_metaik.compare.case import Attempt, Case, Task
 from pin_metaik.kinematics import Chain
 
+TOLD = "The method says UNREACHABLE, and does not claim to have solved it; to give up in silence is no success."
 BEYOND = (0.001, 0.05)  # m past the bound on the arm's reach
 
 
@@ -25,10 +26,10 @@ def pushed_out(
     return far
 
 
-def draw(chain: Chain, rng: np.random.Generator) -> Task:
+def draw(chain: Chain, rng: np.random.Generator, beyond: tuple[float, float] = BEYOND) -> Task:
     """A random pose, pushed out."""
     pose = chain.placements(chain.q(chain.box.sample(rng, 1)[0]))[0].homogeneous
-    return Task(chain, (pin.SE3(pushed_out(chain, pose[None], rng)[0]),))
+    return Task(chain, (pin.SE3(pushed_out(chain, pose[None], rng, beyond)[0]),))
 
 
 def told(task: Task, attempt: Attempt) -> bool:
@@ -41,5 +42,5 @@ JUST_OUT_OF_REACH = Case(
     "Random poses pushed outward, 1 mm to 5 cm past the bound on the arm's reach that its links give.",
     draw,
     judge=told,
-    success="The method says UNREACHABLE, and does not claim to have solved it; to give up in silence is no success.",
+    success=TOLD,
 )

@@ -61,7 +61,8 @@ def overview(results: Results) -> Section:
     )
     text = (
         "Evaluations are those of the solved trials, processor time that of all. The rank is by evaluations to "
-        "solution on each task, 1 being the best; who did not solve it shares the last place.",
+        "solution on each task, 1 being the best; who did not solve it shares the last place. Where no target can be "
+        "met, solved means that it was said, and all who said so share the first place.",
         f"Friedman's test over {test.blocks:,} tasks: chi squared = {test.statistic:.4g}, {in_words(test.p)}.",
     )
     return Section("In short", text, (table,), distributions(results))

@@ -14,11 +14,14 @@ RESTARTS = "restarts"
 
 
 def seeds_against_restarts(results: Results) -> Section | None:
-    """Each hybrid against its refiner with restarts, case by case; None when there is no such pair."""
+    """Each hybrid against its refiner with restarts, case by case; None when there is no such pair.
+
+    Cases in which no target can be met are left out: there it is the proof that counts, and not the starts.
+    """
     hybrids = [(m, f"{m.partition('+')[2]}+{RESTARTS}") for m in results.counted if "+" in m]
     hybrids = [(hybrid, control) for hybrid, control in hybrids if hybrid != control and control in results.counted]
     where, tests = [], []
-    for case in results.cases:
+    for case in [case for case in results.cases if not results.hopeless(case)]:
         costs = results.costs(case)
         for hybrid, control in hybrids if len(costs) else []:
             column = results.counted.index

@@ -9,6 +9,7 @@ import numpy as np
 from pin_metaik.compare.report.parts import Column, Section, Table, Value
 from pin_metaik.compare.results import Results, cost, summarise
 from pin_metaik.compare.trial import Trial
+from pin_metaik.ik import IKStatus
 
 SHOWN = 5  # of each case
 
@@ -44,7 +45,7 @@ def worst(results: Results, folder: str) -> Section:
 
 
 def trouble(results: Results) -> Section | None:
-    """Errors that were raised and successes that were none; None if there were neither."""
+    """Errors that were raised, successes that were none, and targets called out of reach that others met."""
     errors = Counter((t.method, t.case, t.error) for t in results.trials if t.error is not None)
     rows: list[tuple[Value, ...]] = [
         (method, case, f"{count:,} trials raised {error}") for (method, case, error), count in errors.most_common()
@@ -56,6 +57,10 @@ def trouble(results: Results) -> Section | None:
                 rows.append(
                     (method, case, f"{claims:,} trials claimed a solution that Pinocchio (or coal) does not confirm")
                 )
+    met = {(t.robot, t.case, t.target) for t in results.trials if t.met}
+    denied = [t for t in results.trials if t.status == IKStatus.UNREACHABLE and (t.robot, t.case, t.target) in met]
+    wrong = Counter((t.method, t.case) for t in denied)
+    rows += [(*who, f"{count:,} trials said UNREACHABLE of a target that was met") for who, count in wrong.items()]
     over = Counter((t.method, t.case) for t in results.trials if (t.evaluations or 0) > t.allowed)
     rows += [(*who, f"{count:,} trials spent more than was allowed") for who, count in over.items()]
     if not rows:

@@ -1,0 +1,102 @@
+"""Every target solved or proved unreachable: how many, how quickly, and whether the proofs can be believed.
+
+    python benchmarks/ik_decide.py [arms margins complete soundness shelf twice starts] [--targets 200] ...
+
+Writes the sections named, default all, into the page, and leaves its others as they are; each says by which command it
+was measured, when and on what machine. All questions go through ``solve_ik`` and ``solve_ik_batch``, one thread unless
+said otherwise. Times are processor times.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import platform
+import re
+import sys
+import time
+from collections.abc import Callable
+from datetime import date
+from importlib.metadata import version
+from pathlib import Path
+
+from ik_decide_arms import arms, complete, margins, starts
+from ik_decide_grasps import shelf, twice
+from proof_soundness import KINDS, counted
+
+TITLE = "# Every target solved or proved unreachable"
+
+
+def soundness(options: argparse.Namespace) -> list[str]:
+    """What ``proof_soundness.py`` counts."""
+    lines = [
+        "Feasible targets, and boxes that hold a known solution, on arms and configurations at their worst: see "
+        "`benchmarks/proof_soundness.py`. Seconds are by the clock.",
+        "",
+        "| what | looked at | arms | called out of reach | s |",
+        "|---|---:|---:|---:|---:|",
+    ]
+    for kind, asked in KINDS.items():
+        began = time.perf_counter()
+        count = int(options.soundness if kind != "public" else options.soundness / 10)
+        looked, wrong, drawn = counted(kind, count, options.workers, kept=options.kept_parts)
+        lines.append(f"| {asked.title} | {looked:,} | {drawn:,} | {wrong} | {time.perf_counter() - began:.0f} |")
+    return lines
+
+
+SECTIONS: dict[str, tuple[str, Callable[[argparse.Namespace], list[str]]]] = {
+    "arms": ("Random orientations at reachable positions", arms),
+    "margins": ("By margin", margins),
+    "complete": ("All solutions", complete),
+    "soundness": ("Whether a proof is ever wrong", soundness),
+    "shelf": ("Grasps on a shelf", shelf),
+    "twice": ("The same twice", twice),
+    "starts": ("Seeds and generators", starts),
+}
+
+
+def page_with(page: str, title: str, lines: list[str]) -> str:
+    """The page with one section new, all in the order of ``SECTIONS``."""
+    _, *old = page.split("\n## ")
+    known = {name: text.strip() for name, _, text in (section.partition("\n") for section in old)}
+    known[title] = "\n".join(lines).strip()
+    written = [f"## {name}\n\n{known[name]}" for name, _ in SECTIONS.values() if name in known]
+    return "\n\n".join([TITLE, *written]) + "\n"
+
+
+def conditions() -> str:
+    """The command, the date and the machine."""
+    packages = ", ".join(f"{name} {version(name)}" for name in ("pin", "coal", "numpy", "numba"))
+    load = ", ".join(f"{value:.1f}" for value in os.getloadavg())
+    files = re.compile(r" --(out|kept-parts|kept-scan)[ =]\S+")  # they do not change what is measured
+    command = files.sub("", " ".join(["python", "benchmarks/ik_decide.py", *sys.argv[1:]]))
+    return (
+        f"`{command}`, {date.today()}, {os.cpu_count()}-core {platform.machine()}, load {load}, "
+        f"Python {platform.python_version()}, {packages}."
+    )
+
+
+def main() -> None:
+    """Measure the sections named and write them into the page, one after the other."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("sections", nargs="*", choices=[[], *SECTIONS], metavar="SECTION", help=", ".join(SECTIONS))
+    parser.add_argument("--targets", type=int, default=200, help="of each arm")
+    parser.add_argument("--robots", nargs="*", help="of the sections arms and margins; default: all in their tables")
+    parser.add_argument("--soundness", type=float, default=1e6, help="boxes and targets; a tenth through solve_ik")
+    parser.add_argument("--grasps", type=int, default=300, help="of the section shelf")
+    parser.add_argument("--again", type=int, default=200, help="grasps of the section twice")
+    parser.add_argument("--workers", type=int, default=2, help="processes of soundness and of the dense scan")
+    parser.add_argument("--kept-parts", type=Path, help="file that finished parts of soundness are kept in")
+    parser.add_argument("--kept-scan", type=Path, help="file that verdicts of the dense scan are kept in")
+    parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".md"))
+    options = parser.parse_args()
+    for name in options.sections or SECTIONS:
+        title, measure = SECTIONS[name]
+        lines = [conditions(), "", *measure(options)]
+        page = options.out.read_text(encoding="utf-8") if options.out.exists() else ""
+        options.out.write_text(page_with(page, title, lines), encoding="utf-8")
+        print(f"## {title}", *lines, sep="\n", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,83 @@
+"""No solution: a position that the arm reaches, with an orientation that it has not there; what counts is to say so."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from pin_metaik.compare.case import Case, NoTask, Task
+from pin_metaik.compare.cases.just_out_of_reach import TOLD, told
+from pin_metaik.ik import DLS, IKProblem
+from pin_metaik.ik.target import DEFAULT_TOLERANCE
+from pin_metaik.kinematics import Chain
+from pin_metaik.kinematics.proofs.arm import proof_arm
+from pin_metaik.kinematics.proofs.closed_forms import ClosedFormProof
+
+DRAWS, VAIN = 2_000, 60  # orientations, and proofs that fail, before an arm is said to have none
+QUICK, LONG = 3_000, 25_000  # evaluations of descents before a proof is tried, and after it
+EACH = 4  # evaluations of one descent, at least
+BOXES = 30_000  # of one proof; a tenth of a second
+TINY = 1e-7  # rad or m; a box as small as this may hold a solution
+
+
+def proved(chain: Chain, pose: NDArray[np.float64]) -> bool:
+    """Whether it is proved, by its closed form or by boxes, that no configuration meets a pose (4, 4)."""
+    from pin_metaik.kinematics.proofs.box import BoxArm
+    from pin_metaik.kinematics.proofs.box_search import cover
+
+    if len(chain.form):
+        proof = ClosedFormProof.of(chain.form, chain.paths, chain.limits)
+        if proof.judge(pose, DEFAULT_TOLERANCE, DEFAULT_TOLERANCE).proved:
+            return True
+    arm = proof_arm(chain.paths, chain.limits, 0, oriented=True)
+    if arm is None:
+        return False
+    arrays: Any = arm.arrays
+    asked, leaves = arm.target(pose, DEFAULT_TOLERANCE, DEFAULT_TOLERANCE), np.empty((1, arm.whole.shape[1]))
+    _, kept, done = cover(*BoxArm(*arrays), *asked, arm.whole, TINY, BOXES, leaves)
+    return bool(done and not kept)
+
+
+def found(chain: Chain, pose: pin.SE3, rng: np.random.Generator, evaluations: int) -> bool:
+    """Whether descents from random starts meet a pose."""
+    starts = chain.box.sample(rng, evaluations // EACH)
+    return DLS().refine(IKProblem.of(chain, pose), starts, evaluations).met
+
+
+def draw(chain: Chain, rng: np.random.Generator) -> Task:
+    """A random orientation at the position of a random configuration, until there is one without a solution.
+
+    Raises:
+        NoTask: The arm has none in so many draws, or none that is proved.
+    """
+    reach, vain = chain.reach(0, oriented=True), 0
+    for _ in range(DRAWS):
+        position = chain.placements(chain.q(chain.box.sample(rng, 1)[0]))[0].translation
+        pose = pin.SE3(pin.Quaternion(*_unit(rng)).matrix(), position)
+        if reach.gap(pose) > 0.0 or found(chain, pose, rng, QUICK):
+            continue
+        if proved(chain, pose.homogeneous) and not found(chain, pose, rng, LONG):
+            return Task(chain, (pose,))
+        vain += 1
+        if vain == VAIN:
+            break
+    raise NoTask("of the random orientations at positions that it reaches none is proved to have no solution")
+
+
+def _unit(rng: np.random.Generator) -> NDArray[np.float64]:
+    """A random quaternion (4,), uniform."""
+    v = rng.normal(size=4)
+    return np.asarray(v / np.linalg.norm(v))
+
+
+NO_SOLUTION = Case(
+    "no_solution",
+    "Random orientations at reachable positions that are within reach by the links' span, and still proved to have no "
+    "solution; 25,000 evaluations of descents find none either.",
+    draw,
+    judge=told,
+    success=TOLD,
+)
