@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
@@ -11,34 +9,24 @@ from numpy.typing import NDArray
 from pin_metaik.compare.case import Case, NoTask, Task
 from pin_metaik.compare.cases.just_out_of_reach import TOLD, told
 from pin_metaik.ik import DLS, IKProblem
-from pin_metaik.ik.target import DEFAULT_TOLERANCE
 from pin_metaik.kinematics import Chain
-from pin_metaik.kinematics.proofs.arm import proof_arm
-from pin_metaik.kinematics.proofs.closed_forms import ClosedFormProof
 
 DRAWS, VAIN = 2_000, 60  # orientations, and proofs that fail, before an arm is said to have none
 QUICK, LONG = 3_000, 25_000  # evaluations of descents before a proof is tried, and after it
 EACH = 4  # evaluations of one descent, at least
 BOXES = 30_000  # of one proof; a tenth of a second
-TINY = 1e-7  # rad or m; a box as small as this may hold a solution
 
 
-def proved(chain: Chain, pose: NDArray[np.float64]) -> bool:
-    """Whether it is proved, by its closed form or by boxes, that no configuration meets a pose (4, 4)."""
-    from pin_metaik.kinematics.proofs.box import BoxArm
-    from pin_metaik.kinematics.proofs.box_search import cover
-
-    if len(chain.form):
-        proof = ClosedFormProof.of(chain.form, chain.paths, chain.limits)
-        if proof.judge(pose, DEFAULT_TOLERANCE, DEFAULT_TOLERANCE).proved:
-            return True
-    arm = proof_arm(chain.paths, chain.limits, 0, oriented=True)
-    if arm is None:
+def proved(chain: Chain, pose: pin.SE3) -> bool:
+    """Whether it is proved, by its closed form or by boxes, that no configuration meets a pose."""
+    problem = IKProblem.of(chain, pose)
+    if problem.refuted is not None:
+        return True
+    boxes = problem.boxes(0)
+    if boxes is None:
         return False
-    arrays: Any = arm.arrays
-    asked, leaves = arm.target(pose, DEFAULT_TOLERANCE, DEFAULT_TOLERANCE), np.empty((1, arm.whole.shape[1]))
-    _, kept, done = cover(*BoxArm(*arrays), *asked, arm.whole, TINY, BOXES, leaves)
-    return bool(done and not kept)
+    boxes.look(BOXES)
+    return boxes.excluded
 
 
 def found(chain: Chain, pose: pin.SE3, rng: np.random.Generator, evaluations: int) -> bool:
@@ -59,7 +47,7 @@ def draw(chain: Chain, rng: np.random.Generator) -> Task:
         pose = pin.SE3(pin.Quaternion(*_unit(rng)).matrix(), position)
         if reach.gap(pose) > 0.0 or found(chain, pose, rng, QUICK):
             continue
-        if proved(chain, pose.homogeneous) and not found(chain, pose, rng, LONG):
+        if proved(chain, pose) and not found(chain, pose, rng, LONG):
             return Task(chain, (pose,))
         vain += 1
         if vain == VAIN:
