@@ -63,7 +63,7 @@ class Scene:
             return self.bounds
         everything = shapely.union_all([shapely.MultiPoint([self.start, self.goal]), *self.obstacles])
         x_min, y_min, x_max, y_max = everything.bounds
-        room = max(x_max - x_min, y_max - y_min, 1e-6)
+        room = max(x_max - x_min, y_max - y_min) or 1.0
         return x_min - room, y_min - room, x_max + room, y_max + room
 
     @checked
