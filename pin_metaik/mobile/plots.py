@@ -23,6 +23,7 @@ from pin_metaik.optimize.space import Array
 
 # Okabe and Ito: told apart by every eye and in grey.
 BLUE, RED, GREEN, GREY, STONE = "#0072b2", "#d55e00", "#009e73", "#999999", "#c9c5bd"
+EDGE = "#6b675f"
 DPI = 150
 
 
@@ -51,11 +52,16 @@ def draw_scene(ax: Any, scene: Scene, region: shapely.Geometry | None = None) ->
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path as Outline
 
-    for polygon in scene.obstacles:
-        outlines = [Outline(np.vstack((ring, ring[:1])), closed=True) for ring in rings(polygon)]
-        ax.add_patch(
-            PathPatch(Outline.make_compound_path(*outlines), facecolor=STONE, edgecolor="#6b675f", linewidth=0.8)
-        )
+    for obstacle in scene.obstacles:
+        match obstacle.geom_type:
+            case "Polygon":
+                outlines = [Outline(np.vstack((ring, ring[:1])), closed=True) for ring in rings(obstacle)]
+                shape = Outline.make_compound_path(*outlines)
+                ax.add_patch(PathPatch(shape, facecolor=STONE, edgecolor=EDGE, linewidth=0.8))
+            case "LineString":
+                ax.plot(*shapely.get_coordinates(obstacle).T, color=EDGE, linewidth=1.2)
+            case _:
+                ax.plot(*shapely.get_coordinates(obstacle).T, "s", color=EDGE, markersize=2.5)
     if region is not None:
         for ring in rings(region):
             ax.plot(*np.vstack((ring, ring[:1])).T, ":", color=GREY, linewidth=0.8)

@@ -46,7 +46,7 @@ class TrajectoryPlan:
     route: Route
     v: Array
     method: Method
-    obstacles: tuple[shapely.Polygon, ...]
+    obstacles: tuple[shapely.Geometry, ...]
     radius: float
     evaluations: int
     seconds: float
