@@ -21,6 +21,8 @@ ROOM = 1e-6  # m; as much too near still keeps the radius
 ARRIVED, ARRIVED_LEARNED = 1e-5, 0.01  # m; how far from the goal it may end, without and with a network
 DENSE = 1e-3  # s; half a millimetre to the next sample, at a distance of 0.2 m less than 1e-6 m are missed
 
+MANY_CORNERS, TUBE = 10, 0.05  # of a path that grids or samplers made; m in which it may be straightened
+
 OPTIMALITY = "quickest of the trajectories of straights and constant-speed curves on this path, not of all trajectories"
 
 
@@ -109,6 +111,13 @@ class TrajectoryPlan:
             said.append(f"no room to turn while moving at corner {', '.join(tight)}: plan the path with a margin")
         if stops:
             said.append(f"stops and turns at corner {', '.join(stops)}")
+        path = self.route.path
+        fewer = len(path.simplified(TUBE).corners)
+        if len(path.corners) >= MANY_CORNERS and 2 * fewer <= len(path.corners):
+            said.append(
+                f"{len(path.corners)} corners, each turned by itself: path.simplified({TUBE}) has {fewer} and is quicker "
+                f"to drive; it is up to {TUBE} m off the path"
+            )
         if self.learned is not None:
             said.append(str(self.learned))
             said.append(f"because of that the robot ends {1e3 * self.end_error:.3f} mm from the goal")

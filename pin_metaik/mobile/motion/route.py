@@ -68,7 +68,7 @@ class Route:
         if (np.abs(turns) >= np.pi).any():
             x, y = path.corners[np.abs(turns).argmax()]
             raise InvalidGeometry(
-                f"the path turns back by 180 degrees at ({x:g}, {y:g}): plan the two parts one by one"
+                f"the path turns back by 180 degrees at ({x:.12g}, {y:.12g}): plan the two parts one by one"
             )
         g = lead_time(np.abs(turns), vehicle)
         s = path.lengths
