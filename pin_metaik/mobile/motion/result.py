@@ -115,8 +115,8 @@ class TrajectoryPlan:
         fewer = len(path.simplified(TUBE).corners)
         if len(path.corners) >= MANY_CORNERS and 2 * fewer <= len(path.corners):
             said.append(
-                f"{len(path.corners)} corners, each turned by itself: path.simplified({TUBE}) has {fewer} and is quicker "
-                f"to drive; it is up to {TUBE} m off the path"
+                f"{len(path.corners)} corners, each turned by itself: path.simplified({TUBE}) has {fewer}, is quicker to "
+                f"drive, and up to {TUBE} m off the path"
             )
         if self.learned is not None:
             said.append(str(self.learned))
