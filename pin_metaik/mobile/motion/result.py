@@ -112,12 +112,13 @@ class TrajectoryPlan:
         if stops:
             said.append(f"stops and turns at corner {', '.join(stops)}")
         path = self.route.path
-        fewer = len(path.simplified(TUBE).corners)
-        if len(path.corners) >= MANY_CORNERS and 2 * fewer <= len(path.corners):
-            said.append(
-                f"{len(path.corners)} corners, each turned by itself: path.simplified({TUBE}) has {fewer}, is quicker to "
-                f"drive, and up to {TUBE} m off the path"
-            )
+        if len(path.corners) >= MANY_CORNERS:
+            fewer = path.simplified(TUBE)
+            if 2 * len(fewer.corners) <= len(path.corners):
+                said.append(
+                    f"{len(path.corners)} corners, each turned by itself: path.simplified({TUBE}) has "
+                    f"{len(fewer.corners)}, is quicker to drive, and up to {TUBE} m off the path"
+                )
         if self.learned is not None:
             said.append(str(self.learned))
             said.append(f"because of that the robot ends {1e3 * self.end_error:.3f} mm from the goal")

@@ -81,7 +81,8 @@ class Path:
             InvalidSetting: A deviation below zero.
         """
         within("deviation", deviation, 0)
-        return Path(shapely.get_coordinates(shapely.simplify(shapely.LineString(self.points), deviation, False)))
+        fewer = shapely.simplify(shapely.LineString(self.points), deviation, preserve_topology=False)
+        return Path(shapely.get_coordinates(fewer))
 
     @checked
     def write(self, file: str | File) -> None:
