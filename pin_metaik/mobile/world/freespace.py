@@ -204,7 +204,8 @@ def _line(path: Array) -> shapely.LineString:
     points = array("path", path, "n", 2, error=InvalidGeometry, finite=False)
     if len(points) < 2:
         raise InvalidGeometry(f"a path has at least two points, got {len(points)}")
-    return shapely.LineString(points)
+    with np.errstate(invalid="ignore"):
+        return shapely.LineString(points)
 
 
 def _walls(scene: Scene, clearance: float) -> Box:
