@@ -38,11 +38,11 @@ def shortest_length(start, goal, obstacles, bounds) -> float:
 
 
 def contacts(solid) -> list:
-    """Small discs where two rings of a region touch; a path may bend round them."""
+    """Small squares where two rings of a region touch; a path may bend round them."""
     rings = [ring for part in shapely.get_parts(solid) for ring in (part.exterior, *part.interiors)]
     pairs = [(a, b) for i, a in enumerate(rings) for b in rings[i + 1 :] if a.distance(b) < TOUCH]
     met = [part for a, b in pairs for part in shapely.get_parts(a.buffer(2 * TOUCH).intersection(b))]
-    return [part.centroid.buffer(PLUG) for part in met]
+    return [part.centroid.buffer(PLUG, quad_segs=1) for part in met]
 
 
 def overlapping(rng) -> Scene:

@@ -74,7 +74,7 @@ class Visibility:
 
     def __init__(self, space: FreeSpace) -> None:
         self.space = space
-        self.border = Border.of(space.region, SLACK * space.touch)
+        self.border = Border.of(space.region, SLACK * space.touch).weeded()
         self.grid = EdgeGrid.of(self.border)
 
     @property
