@@ -168,3 +168,15 @@ def test_a_plane_without_end_has_room_for_a_robot_larger_than_what_stands_in_it(
             for bounds in (None, (-99, -99, 99, 99))
         ]
         assert lengths == pytest.approx([length] * 2, abs=1e-4)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 1.0])
+def test_a_corner_rounded_by_a_hair_is_a_corner(angle):
+    """However small the arc, down to rounding: its vertices one by one look as if they stood amid a straight edge."""
+    arc = np.linspace(0, np.pi / 2, 5)
+    for size in 10.0 ** np.arange(-13, -6, 0.5):
+        rounded = 1 - size + size * np.column_stack((np.cos(arc), np.sin(arc)))
+        square = affinity.rotate(shapely.Polygon([(0, 0), (1, 0), *rounded, (0, 1)]), angle, (0, 0), use_radians=True)
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        scene = Scene(turn @ (1.5, 0.2), turn @ (0.2, 1.5), [square])
+        assert planned(scene) == pytest.approx(2 * np.hypot(0.5, 0.8), abs=1e-6), size
