@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -195,7 +196,7 @@ def _parts(geometry: BaseGeometry, place: str) -> Iterator[Found]:
 def _is_ring(source: Any) -> bool:
     """Whether it is one list of vertices: what its first element holds first is a number."""
     try:
-        return np.ndim(source[0][0]) == 0 and not isinstance(source[0], (str, Mapping, BaseGeometry))
+        return isinstance(source[0][0], Real) and not isinstance(source[0], (Mapping, bytes))
     except (TypeError, IndexError, KeyError, ValueError):
         return False
 
