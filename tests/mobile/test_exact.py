@@ -4,6 +4,7 @@ import shapely
 from numpy.testing import assert_allclose
 from shapely import affinity
 
+from benchmarks import mobile_truth as oracle
 from pin_metaik.mobile import (
     Blocked,
     FreeSpace,
@@ -18,7 +19,6 @@ from pin_metaik.mobile import (
 )
 from pin_metaik.mobile.paths.exact import Search
 from pin_metaik.mobile.world.scene import scene_names
-from tests.mobile import oracle
 
 OPTIMA = {  # by an independent planner
     "ten_obstacles": 11.815274943,

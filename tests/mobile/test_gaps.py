@@ -5,8 +5,8 @@ import pytest
 import shapely
 from shapely import affinity
 
+from benchmarks import mobile_truth as oracle
 from pin_metaik.mobile import FreeSpace, NoPath, PathProblem, Scene, grid_of, plan_path
-from tests.mobile import oracle
 
 LOWER, UPPER = shapely.box(0, 0, 1, 1), shapely.box(1, 1, 2, 2)  # they touch in (1, 1)
 START, GOAL = (0.5, 1.5), (1.5, 0.5)

@@ -10,7 +10,6 @@ from pin_metaik.mobile import NOMAD_200, Path, Route, SynchroDrive, load_vehicle
 from pin_metaik.mobile.motion.straight import straight_phases, straight_time
 from pin_metaik.mobile.motion.timing import drive
 from pin_metaik.mobile.motion.turn import clothoid, cut_time, lead_time, turn_phases, turn_shape, turn_time
-from pin_metaik.mobile.motion.turn_data import fine_grid
 
 SLOWER = dataclasses.replace(NOMAD_200, alpha_max=np.radians(30))
 TABLE = [  # robot, theta in degrees, g, e, T in s
