@@ -118,28 +118,30 @@ def draw_trajectory(figure: Any, plan: TrajectoryPlan, scene: Scene) -> None:
         world.add_patch(_disc(samples.xy[k], plan.radius))
     world.set(xlabel="x, m", ylabel="y, m")
     verdict = "" if plan.success else ", collides" if not plan.collision_free else ", misses the goal"
-    said = f"{plan.method}: {plan.time:.2f} s ({plan.stop_and_turn:.2f} s with stops){verdict}"
+    said = f"{plan.method}: driven in {plan.time:.2f} s, with a stop at every corner {plan.stop_and_turn:.2f} s{verdict}"
     world.set_title(said, fontsize="medium", color="black" if plan.success else RED)
 
     vehicle = plan.route.vehicle
     speed, turning, clear = (figure.add_subplot(grid[i, 1]) for i in range(3))
     speed.plot(samples.t, samples.v, color=BLUE)
-    speed.axhline(vehicle.v_max, color=GREY, linewidth=0.8, linestyle=":")
+    speed.axhline(vehicle.v_max, color=GREY, linewidth=0.8, linestyle=":", label="limit")
     speed.set_ylabel("speed, m/s")
     turning.plot(samples.t, np.degrees(samples.omega), color=RED)
-    for limit in (-vehicle.omega_max, vehicle.omega_max):
-        turning.axhline(np.degrees(limit), color=GREY, linewidth=0.8, linestyle=":")
+    for limit, name in ((-vehicle.omega_max, None), (vehicle.omega_max, "limits")):
+        turning.axhline(np.degrees(limit), color=GREY, linewidth=0.8, linestyle=":", label=name)
     turning.set_ylabel("turning, deg/s")
     if plan.obstacles:
         clear.plot(
             samples.t, shapely.distance(shapely.points(samples.xy), shapely.union_all(plan.obstacles)), color=GREEN
         )
-        clear.axhline(plan.radius, color=GREY, linewidth=0.8, linestyle=":")
+        clear.axhline(plan.radius, color=GREY, linewidth=0.8, linestyle=":", label="radius")
         clear.set_ylim(bottom=0)
     clear.set(xlabel="time, s", ylabel="clearance, m")
     for ax in (speed, turning, clear):
         ax.grid(alpha=0.3)
         ax.set_xlim(0, plan.time)
+        if ax.get_legend_handles_labels()[0]:
+            ax.legend(fontsize="small", framealpha=0.8)
 
 
 def _along(figure: Any, ax: Any, xy: Array, v: Array) -> None:
