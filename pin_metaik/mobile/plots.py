@@ -118,7 +118,7 @@ def draw_trajectory(figure: Any, plan: TrajectoryPlan, scene: Scene) -> None:
         world.add_patch(_disc(samples.xy[k], plan.radius))
     world.set(xlabel="x, m", ylabel="y, m")
     verdict = "" if plan.success else ", collides" if not plan.collision_free else ", misses the goal"
-    said = f"{plan.method}: driven in {plan.time:.2f} s, with a stop at every corner {plan.stop_and_turn:.2f} s{verdict}"
+    said = f"{plan.method}: driven in {plan.time:.2f} s, with stops at all corners {plan.stop_and_turn:.2f} s{verdict}"
     world.set_title(said, fontsize="medium", color="black" if plan.success else RED)
 
     vehicle = plan.route.vehicle

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,6 +16,7 @@ from pin_metaik.mobile.errors import Blocked
 from pin_metaik.mobile.world.gaps import Contacts, opened
 from pin_metaik.mobile.world.growth import MITRE_LIMIT, WITHIN, Join, grow
 from pin_metaik.mobile.world.scene import Point, Scene
+from pin_metaik.notice import notice
 from pin_metaik.optimize.space import Array
 
 Box = tuple[float, float, float, float]
@@ -22,6 +24,7 @@ Box = tuple[float, float, float, float]
 TOUCH = 1e-10  # of the workspace's width: contact is free, and this is how deep contact may seem by rounding
 ROUNDED = 1e-14  # of the largest coordinate: the same, where a workspace lies so far out that digits run short
 GRID = 0.1  # of that: corners are rounded to a grid so fine, which closes seams
+LARGE = 5_000  # vertices from which on work may take seconds, and says so
 HAIR = 4.0  # of that: half the thickness of a line or point that nothing grows
 
 
@@ -60,20 +63,9 @@ class FreeSpace:
         Raises:
             InvalidSetting: A clearance below zero, or no such join.
         """
-        box = x_min, y_min, x_max, y_max = _walls(scene, clearance)
-        touch = _touch(box)
-        flat = [obstacle for obstacle in scene.obstacles if obstacle.geom_type != "Polygon"]
-        solid = [obstacle for obstacle in scene.obstacles if obstacle.geom_type == "Polygon"]
-        grown = [*grow(solid, clearance, join), *grow(flat, max(clearance, HAIR * touch), join)]
-        if x_max - x_min <= 2 * clearance or y_max - y_min <= 2 * clearance:
-            return FreeSpace(scene, clearance, shapely.Polygon(), join)
-        inside = shapely.box(x_min + clearance, y_min + clearance, x_max - clearance, y_max - clearance)
-        region = _without(inside, shapely.union_all(grown), touch)
-        contacts = Contacts.of(region, touch)
-        if len(contacts.corners) or contacts.slivers:
-            closed = shapely.union_all([_beyond(box).difference(region), *contacts.plugs(touch)])
-            region = _without(inside, opened(closed, touch) if contacts.slivers else closed, touch)
-        return FreeSpace(scene, clearance, region, join)
+        vertices = int(shapely.get_num_coordinates(scene.obstacles).sum())
+        with notice(f"free space among {vertices:,} vertices") if vertices > LARGE else nullcontext():
+            return FreeSpace(scene, clearance, _region(scene, clearance, join), join)
 
     @property
     def walls(self) -> Box:
@@ -177,6 +169,24 @@ class FreeSpace:
             return None
         smaller = WITHIN * self.clearance
         return smaller if FreeSpace.of(self.scene, smaller, "round").connects(start, goal) else None
+
+
+def _region(scene: Scene, clearance: float, join: Join) -> shapely.Geometry:
+    """Where the robot may be: inside the walls, outside what is grown, without contacts and slivers."""
+    box = x_min, y_min, x_max, y_max = _walls(scene, clearance)
+    touch = _touch(box)
+    flat = [obstacle for obstacle in scene.obstacles if obstacle.geom_type != "Polygon"]
+    solid = [obstacle for obstacle in scene.obstacles if obstacle.geom_type == "Polygon"]
+    grown = [*grow(solid, clearance, join), *grow(flat, max(clearance, HAIR * touch), join)]
+    if x_max - x_min <= 2 * clearance or y_max - y_min <= 2 * clearance:
+        return shapely.Polygon()
+    inside = shapely.box(x_min + clearance, y_min + clearance, x_max - clearance, y_max - clearance)
+    region = _without(inside, shapely.union_all(grown), touch)
+    contacts = Contacts.of(region, touch)
+    if len(contacts.corners) or contacts.slivers:
+        closed = shapely.union_all([_beyond(box).difference(region), *contacts.plugs(touch)])
+        region = _without(inside, opened(closed, touch) if contacts.slivers else closed, touch)
+    return region
 
 
 def _without(inside: shapely.Geometry, solid: shapely.Geometry, touch: float) -> shapely.Geometry:
