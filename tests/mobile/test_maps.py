@@ -292,3 +292,24 @@ def test_a_large_map_is_planned_through_as_well_as_its_cells_allow():
     wide = plan_path(PathProblem.of(scene, 0.2))
     assert plan.length < wide.length
     assert wide.clearance >= 0.2 - 1e-9
+
+
+@pytest.mark.parametrize(("x", "y", "yaw"), [(0, 0, 0.3), (-300, 40, -2.5), (5e5, 5e6, 1.2), (5e5, 5e6, 0)])
+def test_turning_and_moving_a_map_changes_no_length(x, y, yaw):
+    """Cells that touch along edges and in corners, 5 cm wide; the last in projected coordinates of the whole earth."""
+    found = 0
+    for seed in range(12):
+        occupied = np.random.default_rng(seed).random((12, 12)) < 0.35
+        occupied[:2, :2] = occupied[-2:, -2:] = False
+        lengths = []
+        for origin in ((0, 0, 0), (x, y, yaw)):
+            grid = grid_of(occupied, resolution=0.05, origin=origin)
+            turn = 0.05 * np.array([[np.cos(origin[2]), -np.sin(origin[2])], [np.sin(origin[2]), np.cos(origin[2])]])
+            start, goal = (turn @ (end, end) + origin[:2] for end in (0.5, 11.5))
+            try:
+                lengths.append(plan_path(Scene(start, goal, grid.polygons, grid.bounds)).length)
+            except NoPath:
+                lengths.append(np.inf)
+        found += lengths[0] < np.inf
+        assert lengths[1] == pytest.approx(lengths[0], abs=1e-4), seed
+    assert found >= 4

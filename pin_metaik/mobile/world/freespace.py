@@ -22,7 +22,7 @@ from pin_metaik.optimize.space import Array
 Box = tuple[float, float, float, float]
 
 TOUCH = 1e-10  # of the workspace's width: contact is free, and this is how deep contact may seem by rounding
-ROUNDED = 1e-14  # of the largest coordinate: the same, where a workspace lies so far out that digits run short
+ROUNDED = 1e-12  # of the largest coordinate: the same, where a workspace lies so far out that digits run short
 GRID = 0.1  # of that: corners are rounded to a grid so fine, which closes seams
 LARGE = 5_000  # vertices from which on work may take seconds, and says so
 HAIR = 4.0  # of that: half the thickness of a line or point that nothing grows
@@ -33,7 +33,7 @@ class FreeSpace:
     """The workspace without the obstacles grown by a clearance. Its border belongs to it: touching is free.
 
     One rule for what has no width, however the scene is given. A gap between obstacles, or between an obstacle and a
-    wall, is a way only if it is wider than 2e-10 of the workspace (or 2e-14 of its largest coordinate, if that is more:
+    wall, is a way only if it is wider than 2e-10 of the workspace (or 2e-12 of its largest coordinate, if that is more:
     there doubles have no finer steps to speak of). Where two touch, in a line or in a point, there is none. A part of
     an obstacle that is thinner than that is no obstacle. A line or a point is one, whatever its width: nothing goes
     through a line. The planners, the exact test and the fitness that counts overlaps all follow it.
@@ -62,10 +62,18 @@ class FreeSpace:
 
         Raises:
             InvalidSetting: A clearance below zero, or no such join.
+            InvalidGeometry: Obstacles whose coordinates are too fine for doubles to be joined.
         """
         vertices = int(shapely.get_num_coordinates(scene.obstacles).sum())
         with notice(f"free space among {vertices:,} vertices") if vertices > LARGE else nullcontext():
-            return FreeSpace(scene, clearance, _region(scene, clearance, join), join)
+            try:
+                region = _region(scene, clearance, join)
+            except shapely.errors.GEOSException as error:
+                raise InvalidGeometry(
+                    f"the obstacles of {scene.name} cannot be joined ({error}); move them nearer to the origin, or "
+                    "give their coordinates fewer digits"
+                ) from None
+        return FreeSpace(scene, clearance, region, join)
 
     @property
     def walls(self) -> Box:
