@@ -886,6 +886,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     },
     "mobile.OccupancyGrid.without_specks": lambda: {"cells": 2},
     "mobile.Path": lambda: {"points": [[0.0, 0.0], [1.0, 1.0]]},
+    "mobile.Path.simplified": lambda: {"deviation": 0.1},
     "mobile.Path.straightened": lambda: {"slack": 0.1},
     "mobile.Path.write": lambda: {"file": "path.csv"},
     "mobile.PathPlan.verify": dict,

@@ -23,6 +23,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from statistics import median
 
+import mobile_worlds as worlds
 import numpy as np
 import shapely
 
@@ -175,6 +176,51 @@ def times() -> Iterator[str]:
     yield table(["work", "ms"], [[work, f"{ms:,.1f}"] for work, ms in rows])
 
 
+Rows = Iterator[tuple[list[str], list[object]]]
+
+
+def section(title: str, said: str, rows: Rows) -> Iterator[str]:
+    """A section with one table."""
+    found = list(rows)
+    yield f"\n\n## {title}\n"
+    yield f"{said}\n"
+    yield table(found[0][0], [row for _, row in found])
+
+
+def many_worlds(few: bool) -> Iterator[str]:
+    yield from section(
+        "Against another visibility graph",
+        "Random scenes, shortest lengths by shapely and scipy: every vertex to every vertex, a way closed where two "
+        "obstacles, or one and a wall, touch.",
+        worlds.against_another_graph(5 if few else worlds.SEEDS),
+    )
+    yield from section(
+        "Open worlds",
+        "From the polygons to a first path from corner to corner, processor time; and by Dijkstra over all lines of "
+        "sight, in the same run.",
+        worlds.open_worlds((200,) if few else (1000, 2000, 3000)),
+    )
+    yield from section(
+        "Large worlds",
+        "A map of hills, 5 cm a cell, and one obstacle of 20,000 vertices; processor time. Free space is where a robot "
+        "of the radius may be.",
+        worlds.large_worlds(400 if few else 2000),
+    )
+    yield from section(
+        "Sharp polylines",
+        "Two to four corners at random: how far differential evolution is ahead of dynamic programming, or behind it.",
+        worlds.sharp_polylines(10 if few else 300),
+    )
+    yield from section(
+        "Dense paths", "Every corner is turned by itself, so many small ones take long.", worlds.dense_paths()
+    )
+    yield from section(
+        "Learned turns",
+        "The logarithmic 2:5:5:1 network by the length of its training; 300 iterations are the default.",
+        worlds.learned_turns((300,) if few else (300, 4000, 30_000)),
+    )
+
+
 def papers(folder: Path, quick: bool) -> Iterator[str]:
     yield "\n\n## The papers\n"
     yield "Tables next to the printed ones, figures, and every run: the linked reports."
@@ -206,6 +252,7 @@ def main() -> None:
     for part in (
         exact_times(),
         planners(2 if few else 20),
+        many_worlds(few),
         trajectories(2 if few else 10),
         times(),
         papers(folder, few),

@@ -52,7 +52,19 @@ def plan(
     margin: Annotated[
         float | None, typer.Option(help=f"To keep on top of that; default: 0, or {MARGIN} with a trajectory.")
     ] = None,
-    join: Annotated[str, typer.Option(help="Corners of grown obstacles: mitre or round.")] = "mitre",
+    join: Annotated[
+        str | None, typer.Option(help="Corners of grown obstacles: mitre or round; default: mitre, round if it must.")
+    ] = None,
+    unknown: Annotated[
+        str | None, typer.Option(help="Of a grid: unknown cells are blocked (the default) or free.")
+    ] = None,
+    threshold: Annotated[
+        float | None, typer.Option(help="Of a grid: cells above it are occupied; default: 0, of a ROS map 99.")
+    ] = None,
+    specks: Annotated[
+        int | None, typer.Option(min=1, help="Of a grid: groups of fewer occupied cells are left out.")
+    ] = None,
+    resolution: Annotated[float | None, typer.Option(help="Of a .npy: width of a cell, m; default: 1.")] = None,
     vehicle: Annotated[
         str, typer.Option(help="Whose limits the trajectory keeps: nomad200, nomad200_driver, or a .json with others.")
     ] = "nomad200",
@@ -84,7 +96,9 @@ def plan(
     robot = mobile.load_vehicle(vehicle)
     keep = radius if radius is not None else robot.radius if trajectory else 0.0
     room = margin if margin is not None else MARGIN if trajectory else 0.0
-    world = _scene(scene, start, goal, keep + room)
+    cells = {"unknown": unknown, "threshold": threshold, "specks": specks, "resolution": resolution}
+    given = {key: value for key, value in cells.items() if value is not None}
+    world = _scene(scene, start, goal, keep + room, given)
     problem = mobile.PathProblem.of(world, keep, room, join)  # type: ignore[arg-type]  # it checks the join itself
     _warm_up()
     with _progress("path") as tick:
@@ -135,11 +149,14 @@ def _warm_up() -> None:
     mobile.plan_path(mobile.Scene((0.0, 0.0), (3.0, 0.0), box))
 
 
-def _scene(source: str, start: Place, goal: Place, clearance: float) -> Scene:
+def _scene(source: str, start: Place, goal: Place, clearance: float, cells: dict[str, Any]) -> Scene:
+    """The scene of a source; ``cells`` says how a grid is read."""
     from pin_metaik import mobile
 
     if not source.startswith(RANDOM):
-        return mobile.load_scene(source, start, goal)
+        return mobile.load_scene(source, start, goal, **cells)
+    if cells:
+        raise InvalidSetting(f"{', '.join(f'--{key}' for key in cells)}: of an occupancy grid; a random scene is none")
     seed, _, count = source.removeprefix(RANDOM).partition(":")
     if not seed.isdigit() or not (count or "15").isdigit():
         raise InvalidSetting(f"a random scene is random:SEED or random:SEED:OBSTACLES, not {source!r}")

@@ -29,8 +29,8 @@ class Blocked(MetaIKError):
         where = f"is inside an obstacle{f' grown by {clearance:g}' if clearance else ''} or outside the workspace"
         if join is not None:
             where = f"keeps the clearance of {clearance:g}, but {_grown(join)} cover it"
-        hint = f"the nearest free place is ({nearest[0]:g}, {nearest[1]:g})" if nearest else "no place is free"
-        super().__init__(f"the {role} ({point[0]:g}, {point[1]:g}) {where}; {hint}")
+        hint = f"the nearest free place is {_shown(nearest)}" if nearest else "no place is free"
+        super().__init__(f"the {role} {_shown(point)} {where}; {hint}")
 
 
 class NoPath(MetaIKError):
@@ -49,13 +49,18 @@ class NoPath(MetaIKError):
         self, start: Point, goal: Point, clearance: float, nearly: float | None = None, join: str = "mitre"
     ) -> None:
         self.start, self.goal, self.clearance, self.nearly, self.join = start, goal, clearance, nearly, join
-        where = f"no path from ({start[0]:g}, {start[1]:g}) to ({goal[0]:g}, {goal[1]:g})"
+        where = f"no path from {_shown(start)} to {_shown(goal)}"
         why = f"obstacles or walls close every way that keeps a clearance of {clearance:g}"
         hint = "; try a smaller radius or margin" if clearance else ""
         if nearly is not None:
             why = f"{_grown(join)} close every way with a clearance of {clearance:g}, and {nearly:.6g} leaves one"
             hint = "; try join='round'" if join == "mitre" else hint
         super().__init__(f"{where}: {why}{hint}")
+
+
+def _shown(point: Point) -> str:
+    """A place with the digits that tell it from its neighbours, in maps with large coordinates, too."""
+    return f"({point[0]:.12g}, {point[1]:.12g})"
 
 
 def _grown(join: str) -> str:

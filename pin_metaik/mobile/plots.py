@@ -23,6 +23,7 @@ from pin_metaik.optimize.space import Array
 
 # Okabe and Ito: told apart by every eye and in grey.
 BLUE, RED, GREEN, GREY, STONE = "#0072b2", "#d55e00", "#009e73", "#999999", "#c9c5bd"
+EDGE = "#6b675f"
 DPI = 150
 
 
@@ -51,11 +52,16 @@ def draw_scene(ax: Any, scene: Scene, region: shapely.Geometry | None = None) ->
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path as Outline
 
-    for polygon in scene.obstacles:
-        outlines = [Outline(np.vstack((ring, ring[:1])), closed=True) for ring in rings(polygon)]
-        ax.add_patch(
-            PathPatch(Outline.make_compound_path(*outlines), facecolor=STONE, edgecolor="#6b675f", linewidth=0.8)
-        )
+    for obstacle in scene.obstacles:
+        match obstacle.geom_type:
+            case "Polygon":
+                outlines = [Outline(np.vstack((ring, ring[:1])), closed=True) for ring in rings(obstacle)]
+                shape = Outline.make_compound_path(*outlines)
+                ax.add_patch(PathPatch(shape, facecolor=STONE, edgecolor=EDGE, linewidth=0.8))
+            case "LineString":
+                ax.plot(*shapely.get_coordinates(obstacle).T, color=EDGE, linewidth=1.2)
+            case _:
+                ax.plot(*shapely.get_coordinates(obstacle).T, "s", color=EDGE, markersize=2.5)
     if region is not None:
         for ring in rings(region):
             ax.plot(*np.vstack((ring, ring[:1])).T, ":", color=GREY, linewidth=0.8)
@@ -112,28 +118,30 @@ def draw_trajectory(figure: Any, plan: TrajectoryPlan, scene: Scene) -> None:
         world.add_patch(_disc(samples.xy[k], plan.radius))
     world.set(xlabel="x, m", ylabel="y, m")
     verdict = "" if plan.success else ", collides" if not plan.collision_free else ", misses the goal"
-    said = f"{plan.method}: {plan.time:.2f} s ({plan.stop_and_turn:.2f} s with stops){verdict}"
+    said = f"{plan.method}: driven in {plan.time:.2f} s, with stops at all corners {plan.stop_and_turn:.2f} s{verdict}"
     world.set_title(said, fontsize="medium", color="black" if plan.success else RED)
 
     vehicle = plan.route.vehicle
     speed, turning, clear = (figure.add_subplot(grid[i, 1]) for i in range(3))
     speed.plot(samples.t, samples.v, color=BLUE)
-    speed.axhline(vehicle.v_max, color=GREY, linewidth=0.8, linestyle=":")
+    speed.axhline(vehicle.v_max, color=GREY, linewidth=0.8, linestyle=":", label="limit")
     speed.set_ylabel("speed, m/s")
     turning.plot(samples.t, np.degrees(samples.omega), color=RED)
-    for limit in (-vehicle.omega_max, vehicle.omega_max):
-        turning.axhline(np.degrees(limit), color=GREY, linewidth=0.8, linestyle=":")
+    for limit, name in ((-vehicle.omega_max, None), (vehicle.omega_max, "limits")):
+        turning.axhline(np.degrees(limit), color=GREY, linewidth=0.8, linestyle=":", label=name)
     turning.set_ylabel("turning, deg/s")
     if plan.obstacles:
         clear.plot(
             samples.t, shapely.distance(shapely.points(samples.xy), shapely.union_all(plan.obstacles)), color=GREEN
         )
-        clear.axhline(plan.radius, color=GREY, linewidth=0.8, linestyle=":")
+        clear.axhline(plan.radius, color=GREY, linewidth=0.8, linestyle=":", label="radius")
         clear.set_ylim(bottom=0)
     clear.set(xlabel="time, s", ylabel="clearance, m")
     for ax in (speed, turning, clear):
         ax.grid(alpha=0.3)
         ax.set_xlim(0, plan.time)
+        if ax.get_legend_handles_labels()[0]:
+            ax.legend(fontsize="small", framealpha=0.8)
 
 
 def _along(figure: Any, ax: Any, xy: Array, v: Array) -> None:

@@ -1,4 +1,3 @@
-import time
 from statistics import median
 
 import numpy as np
@@ -135,14 +134,3 @@ def test_a_plan_is_plain_values_for_json():
         assert values["path"] == plan.path.points.tolist()
     empty = plan_path(Scene((0, 0), (1, 1)))
     assert empty.as_dict()["clearance"] is None
-
-
-@pytest.mark.parametrize("method", ["ga", "pso"])
-def test_a_run_of_the_papers_size_takes_less_than_half_a_second(method):
-    problem = PathProblem.of(load_scene("fifteen_obstacles"))
-    times = []
-    for _ in range(3):
-        began = time.process_time()
-        plan_path(problem, method, fitness="paper")
-        times.append(time.process_time() - began)
-    assert min(times) < 0.3

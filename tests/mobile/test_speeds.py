@@ -1,8 +1,8 @@
-import time
 import warnings
 
 import numpy as np
 import pytest
+import shapely
 from numpy.testing import assert_allclose
 
 from pin_metaik.errors import InvalidGeometry, InvalidSetting
@@ -73,17 +73,41 @@ def test_no_random_choice_of_speeds_beats_dynamic_programming():
         assert route.times(best.v[None])[0] == pytest.approx(best.time, abs=1e-9)
 
 
-def test_a_plan_with_a_dozen_corners_takes_milliseconds():
-    t = np.arange(14)
-    zigzag = np.column_stack((2.0 * t, np.where(t % 2, 0.8, 0.0)))
-    plan_trajectory(zigzag, NOMAD_200, (BOX,))
-    times = []
-    for _ in range(5):
-        began = time.process_time()
-        plan = plan_trajectory(zigzag, NOMAD_200, (BOX,))
-        times.append(time.process_time() - began)
-    assert len(plan.v) == 12
-    assert min(times) < 0.05
+SHARP = [[0, 0], [-1.1, 2.6], [-1.47, 0.64], [-1.89, 4.32]]  # corners that share a straight as short as it may be
+
+
+def test_where_two_corners_share_a_straight_their_speeds_move_together():
+    best, found = (plan_trajectory(SHARP, method=method) for method in ("dp", "de"))
+    assert best.time == pytest.approx(15.445666, abs=1e-6)
+    assert_allclose(best.v, 0.14463635, atol=1e-6)
+    assert best.time <= found.time + 1e-6
+
+
+def test_differential_evolution_beats_dynamic_programming_on_no_sharp_polyline():
+    """Of 300 the benchmark tells."""
+    rng = np.random.default_rng(1)
+    for seed in range(15):
+        corners = rng.integers(2, 5)
+        path = np.vstack(((0, 0), rng.normal(0, 2, (corners + 1, 2)).cumsum(axis=0)))
+        best, found = (plan_trajectory(path, method=method, rng=seed) for method in ("dp", "de"))
+        assert best.time - found.time < 1e-4, seed
+
+
+def test_a_dense_path_is_driven_quicker_when_simplified_and_the_plan_says_so():
+    angle = np.linspace(0, 2 * np.pi, 300, endpoint=False)
+    circle = Path(5 * np.column_stack((np.cos(angle), np.sin(angle))))
+    zigzag = Path(0.05 * np.column_stack((np.arange(200), np.arange(200) % 2)))
+    for path, share in ((circle, 1.15), (zigzag, 1.15)):
+        dense = plan_trajectory(path)
+        (said,) = (note for note in dense.notes if "simplified" in note)
+        assert "path.simplified(0.05) has" in said
+        simple = plan_trajectory(path.simplified(0.05))
+        assert simple.time < share * path.length / NOMAD_200.v_max < dense.time / 2
+        tube = shapely.LineString(path.points).buffer(0.05 + 1e-9)
+        assert shapely.LineString(path.simplified(0.05).points).within(tube)
+        assert not any("simplified" in note for note in simple.notes)
+    with pytest.raises(InvalidSetting, match="deviation"):
+        circle.simplified(-1)
 
 
 def test_straight_paths_and_no_paths_at_all_have_trajectories():

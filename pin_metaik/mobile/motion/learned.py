@@ -221,7 +221,7 @@ def learn_turn(
         design: ``log`` (logarithms of speed and length, square root of the angle) or ``paper`` (the bare numbers).
         hidden: Neurons of each hidden layer.
         trainer: By name or as an object.
-        iterations: At most.
+        iterations: At most. Plans end millimetres off the goal after 300, tenths of one after 4,000.
         points: Speeds and angles (n, 2) in m/s and rad to learn from; default: the paper's grid. ``log`` leaves out
             angles below half a degree, whose logarithms run away.
         rng: Seed or generator of the first weights.

@@ -21,6 +21,8 @@ ROOM = 1e-6  # m; as much too near still keeps the radius
 ARRIVED, ARRIVED_LEARNED = 1e-5, 0.01  # m; how far from the goal it may end, without and with a network
 DENSE = 1e-3  # s; half a millimetre to the next sample, at a distance of 0.2 m less than 1e-6 m are missed
 
+MANY_CORNERS, TUBE = 10, 0.05  # of a path that grids or samplers made; m in which it may be straightened
+
 OPTIMALITY = "quickest of the trajectories of straights and constant-speed curves on this path, not of all trajectories"
 
 
@@ -46,7 +48,7 @@ class TrajectoryPlan:
     route: Route
     v: Array
     method: Method
-    obstacles: tuple[shapely.Polygon, ...]
+    obstacles: tuple[shapely.Geometry, ...]
     radius: float
     evaluations: int
     seconds: float
@@ -109,6 +111,14 @@ class TrajectoryPlan:
             said.append(f"no room to turn while moving at corner {', '.join(tight)}: plan the path with a margin")
         if stops:
             said.append(f"stops and turns at corner {', '.join(stops)}")
+        path = self.route.path
+        if len(path.corners) >= MANY_CORNERS:
+            fewer = path.simplified(TUBE)
+            if 2 * len(fewer.corners) <= len(path.corners):
+                said.append(
+                    f"{len(path.corners)} corners, each turned by itself: path.simplified({TUBE}) has "
+                    f"{len(fewer.corners)}, is quicker to drive, and up to {TUBE} m off the path"
+                )
         if self.learned is not None:
             said.append(str(self.learned))
             said.append(f"because of that the robot ends {1e3 * self.end_error:.3f} mm from the goal")

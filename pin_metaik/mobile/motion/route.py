@@ -45,7 +45,7 @@ class Route:
     @staticmethod
     @checked
     def along(
-        path: Path, vehicle: SynchroDrive, obstacles: Sequence[shapely.Polygon] = (), radius: float | None = None
+        path: Path, vehicle: SynchroDrive, obstacles: Sequence[shapely.Geometry] = (), radius: float | None = None
     ) -> Route:
         """The route along a path.
 
@@ -55,7 +55,7 @@ class Route:
         Args:
             path: A polyline that is free itself, with the robot's radius.
             vehicle: The robot.
-            obstacles: Polygons, not grown.
+            obstacles: Polygons, lines and points, not grown.
             radius: Distance of the robot's centre from obstacles, in m; default: the robot's radius.
 
         Raises:
@@ -68,7 +68,7 @@ class Route:
         if (np.abs(turns) >= np.pi).any():
             x, y = path.corners[np.abs(turns).argmax()]
             raise InvalidGeometry(
-                f"the path turns back by 180 degrees at ({x:g}, {y:g}): plan the two parts one by one"
+                f"the path turns back by 180 degrees at ({x:.12g}, {y:.12g}): plan the two parts one by one"
             )
         g = lead_time(np.abs(turns), vehicle)
         s = path.lengths
@@ -115,7 +115,7 @@ class Route:
         return np.asarray(np.maximum(needed - self.straights(V, tangents), 0).sum(axis=1))
 
     @checked
-    def clear_speed(self, corner: int, obstacles: Sequence[shapely.Polygon], radius: float) -> float:
+    def clear_speed(self, corner: int, obstacles: Sequence[shapely.Geometry], radius: float) -> float:
         """The largest speed up to the cap at which the curve, and all between it and the corner, keeps the radius.
 
         The curves of a corner are copies of each other in different sizes, so what is free at one speed is free at all
@@ -155,7 +155,7 @@ class Route:
 
 
 def keeps_clear(places: Sequence[shapely.Geometry], solid: shapely.Geometry, radius: float, slack: float = 0.0) -> bool:
-    """Whether places keep a distance from what is solid; a robot without a radius may touch it.
+    """Whether places keep a distance from what is solid; a robot without a radius may touch it, but no line or point.
 
     Args:
         places: Where the robot's centre is.
@@ -165,4 +165,7 @@ def keeps_clear(places: Sequence[shapely.Geometry], solid: shapely.Geometry, rad
     """
     if radius > 0:
         return bool((shapely.distance(places, solid) >= radius - slack).all())
-    return not shapely.intersects(places, solid.buffer(-SKIN, join_style="mitre")).any()
+    parts = shapely.get_parts(solid)
+    flat = parts[shapely.get_dimensions(parts) < 2]
+    core = shapely.union_all([solid.buffer(-SKIN, join_style="mitre"), *flat])
+    return not shapely.intersects(places, core).any()

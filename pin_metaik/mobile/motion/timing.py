@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from time import perf_counter
+from typing import Any
 
 import numpy as np
-import shapely
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked
@@ -21,6 +21,7 @@ from pin_metaik.mobile.motion.trajectory import Phase, Trajectory
 from pin_metaik.mobile.motion.turn import turn_phases
 from pin_metaik.mobile.motion.vehicle import NOMAD_200, SynchroDrive
 from pin_metaik.mobile.paths.path import Path
+from pin_metaik.mobile.world.polygons import read_obstacles
 from pin_metaik.optimize import AskTell, Budget, Metaheuristic
 from pin_metaik.optimize.de import DE
 from pin_metaik.optimize.settings import one_of, within
@@ -34,7 +35,7 @@ SEARCH_BUDGET = Budget(evaluations=30 * 500)
 def plan_trajectory(
     path: Path | ArrayLike,
     vehicle: SynchroDrive = NOMAD_200,
-    obstacles: Sequence[shapely.Polygon] = (),
+    obstacles: Any = (),
     *,
     method: Method = "dp",
     radius: float | None = None,
@@ -52,7 +53,7 @@ def plan_trajectory(
     Args:
         path: A polyline, or its points (n, 2) in m.
         vehicle: The robot and its limits.
-        obstacles: Polygons, not grown.
+        obstacles: Polygons, lines and points, not grown: anything ``read_obstacles`` takes.
         method: ``dp`` finds the best speeds; ``de`` searches for them; ``ann`` searches with the network's tangent
             lengths, as the paper, and executes what comes out with the true turns.
         radius: Distance of the robot's centre from obstacles, in m; default: the robot's radius.
@@ -64,7 +65,7 @@ def plan_trajectory(
 
     Raises:
         InvalidSetting: No such method, or a radius below zero.
-        InvalidGeometry: A path that is none, or that turns back by 180 degrees.
+        InvalidGeometry: A path that is none, or that turns back by 180 degrees; obstacles that are none.
         Interrupted: Ctrl-C, after the first generation of a search; its ``result`` is the plan with the best speeds.
     """
     one_of("method", method, Method)
@@ -74,10 +75,11 @@ def plan_trajectory(
     within("radius", keep, 0)
     if method == "ann":
         model = model or learn_turn(vehicle)
+    solid = read_obstacles(obstacles)
     began = perf_counter()
     if not isinstance(path, Path):
         path = Path(array("path", path, "n", 2, error=InvalidGeometry))
-    route = Route.along(path, vehicle, obstacles, keep)
+    route = Route.along(path, vehicle, solid, keep)
     turns = model.at(np.abs(route.turns)) if method == "ann" and model is not None else None
 
     def planned(speeds: Speeds) -> TrajectoryPlan:
@@ -87,7 +89,7 @@ def plan_trajectory(
             route=route,
             v=speeds.v,
             method=method,
-            obstacles=tuple(obstacles),
+            obstacles=solid,
             radius=keep,
             evaluations=speeds.evaluations,
             seconds=took,

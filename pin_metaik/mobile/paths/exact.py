@@ -6,6 +6,7 @@ straight line first, and in an open world few others).
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from heapq import heappop, heappush
 
 import numpy as np
@@ -17,8 +18,9 @@ from pin_metaik.mobile.paths import visibility_kernels as kernels
 from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.paths.visibility import Visibility
 from pin_metaik.mobile.world.border import Indices
-from pin_metaik.mobile.world.freespace import FreeSpace
+from pin_metaik.mobile.world.freespace import LARGE, FreeSpace
 from pin_metaik.mobile.world.scene import Point
+from pin_metaik.notice import notice
 from pin_metaik.optimize.space import Array
 
 Edges = set[tuple[int, int]]
@@ -45,15 +47,12 @@ def shortest_path(space: FreeSpace, start: Point, goal: Point, visibility: Visib
     if not space.connects(start, goal):
         raise NoPath(start, goal, space.clearance, space.nearly_connects(start, goal), space.join)
     search = Search.between(visibility or Visibility(space), start, goal)
-    refused: Edges = set()
-    while True:
-        nodes = search.route(refused)
-        if nodes is None:
-            raise NoPath(start, goal, space.clearance, space.nearly_connects(start, goal), space.join)
-        path = Path(search.points[nodes])
-        if space.holds(path.points):
-            return path.straightened(search.visibility.border.slack)
-        refused.add(_first_blocked(search.points, nodes, space))
+    corners = len(search.points)
+    with notice(f"shortest path among {corners:,} corners") if corners > LARGE else nullcontext():
+        path = search.free_path()
+    if path is None:
+        raise NoPath(start, goal, space.clearance, space.nearly_connects(start, goal), space.join)
+    return path
 
 
 class Search:
@@ -75,6 +74,17 @@ class Search:
     def between(visibility: Visibility, start: Point, goal: Point) -> Search:
         """The search from a start to a goal, which must be free."""
         return Search(visibility, *visibility.nodes(start, goal))
+
+    def free_path(self) -> Path | None:
+        """The shortest way that the exact test lets through, too; None if there is none."""
+        refused: Edges = set()
+        space = self.visibility.space
+        while (nodes := self.route(refused)) is not None:
+            path = Path(self.points[nodes])
+            if space.holds(path.points):
+                return path.straightened(self.visibility.border.slack)
+            refused.add(_first_blocked(self.points, nodes, space))
+        return None
 
     def route(self, refused: Edges) -> list[int] | None:
         """Nodes of the shortest way from start to goal along no edge that is refused; None if there is none."""

@@ -134,7 +134,8 @@ def _wraps(into: Array, out: Array, obstacle: Array, slack: float) -> NDArray[np
         slack: Distance from a line that still is on it.
     """
     turn = into[:, 0, None] * out[:, 1] - into[:, 1, None] * out[:, 0]
-    straight = np.abs(turn) <= slack * np.hypot(into[:, 0], into[:, 1])[:, None]
+    longer = np.maximum(np.hypot(*into.T)[:, None], np.hypot(*out.T))
+    straight = np.abs(turn) <= slack * longer  # the corner is within the slack of the line past it
     left = _is_left(into, obstacle)[:, None]
     bends = ~straight & ((turn > 0) == left) & (_is_left(out, obstacle) == left)
     may: NDArray[np.bool_] = bends | (straight & (into @ out.T > 0))

@@ -8,10 +8,12 @@ from functools import cached_property
 from pathlib import Path as File
 
 import numpy as np
+import shapely
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked, shown
 from pin_metaik.errors import InvalidGeometry
+from pin_metaik.optimize.settings import within
 from pin_metaik.optimize.space import Array
 from pin_metaik.output import writable
 
@@ -64,6 +66,23 @@ class Path:
             if not repeated and not (across <= slack and ahead):
                 kept.append(point)
         return Path(np.array([*kept, self.points[-1]]))
+
+    @checked
+    def simplified(self, deviation: float) -> Path:
+        """A path of fewer points for one of many, as grids and samplers give: start, goal and some of those between.
+
+        Every point left out is within a deviation of the new path (Douglas and Peucker 1973), which keeps as much less
+        clearance at most. Turns far apart are driven faster than as many small ones.
+
+        Args:
+            deviation: In the path's unit, at least 0.
+
+        Raises:
+            InvalidSetting: A deviation below zero.
+        """
+        within("deviation", deviation, 0)
+        fewer = shapely.simplify(shapely.LineString(self.points), deviation, preserve_topology=False)
+        return Path(shapely.get_coordinates(fewer))
 
     @checked
     def write(self, file: str | File) -> None:

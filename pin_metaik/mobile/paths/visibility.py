@@ -74,7 +74,7 @@ class Visibility:
 
     def __init__(self, space: FreeSpace) -> None:
         self.space = space
-        self.border = Border.of(space.region, SLACK * space.touch)
+        self.border = Border.of(space.region, SLACK * space.touch).weeded()
         self.grid = EdgeGrid.of(self.border)
 
     @property
@@ -107,12 +107,13 @@ class Visibility:
         c = len(points) - 2
         edges = np.zeros((c + 2, c + 2), dtype=bool)
         edges[:c, :c] = self.mutual
+        slack = self.border.slack
         for node in (c, c + 1):
             kernels.seen_from(node, 0, points, vertex, *self.arrays, edges[node])
             seen = np.flatnonzero(edges[node])
             edges[node, seen[self.inside(points[[node]], points[seen])]] = False
             edges[:, node] = edges[node]
-        edges[c, c + 1] = edges[c + 1, c] = edges[c, c + 1] or np.hypot(*(points[c] - points[c + 1])) <= SLACK
+        edges[c, c + 1] = edges[c + 1, c] = edges[c, c + 1] or np.hypot(*(points[c] - points[c + 1])) <= slack
         return VisibilityGraph(self.border, points, edges)
 
     def inside(self, a: Array, b: Array) -> NDArray[np.bool_]:

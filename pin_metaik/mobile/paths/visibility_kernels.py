@@ -224,11 +224,11 @@ def nearer_through(
         How many.
     """
     x, y, k = points[node, 0], points[node, 1], vertex[node]
-    ix, iy, wrapped = 0.0, 0.0, 0
+    ix, iy, come, wrapped = 0.0, 0.0, 0.0, 0
     if came_from >= 0:
         ix, iy = x - points[came_from, 0], y - points[came_from, 1]
-        far = math.hypot(ix, iy)
-        ix, iy = ix / far, iy / far
+        come = math.hypot(ix, iy)
+        ix, iy = ix / come, iy / come
         wrapped = touched_on(k, ix, iy, vertices, before, after, slack)
     count, guess = 0, -1
     for m in range(len(points)):
@@ -245,7 +245,8 @@ def nearer_through(
             if obstacle == 2:
                 continue
             if came_from >= 0:
-                ahead = side(0.0, 0.0, ix, iy, dx, dy, slack)
+                # no turn, either, where the node is within the slack of the line from the one before to the next
+                ahead = side(0.0, 0.0, ix, iy, dx, dy, slack * max(1.0, far / come))
                 if ahead * obstacle < 0 or ahead * wrapped < 0 or (ahead == 0 and ix * ux + iy * uy < 0):
                     continue
         j = vertex[m]

@@ -43,6 +43,28 @@ class Border:
         on[back] = np.arange(len(back))
         return Border(vertices, back, on, slack)
 
+    def weeded(self) -> Border:
+        """The border without the vertices that are no further than the slack from the line between their neighbours.
+
+        Loops take such a vertex for one amid a straight edge. Where several stand so close together that each of them
+        seems to be one (a corner rounded by a hair), a corner must be left: so they go one by one, the flattest first,
+        and their neighbours are looked at again.
+        """
+        before, after = self.before.copy(), self.after.copy()
+        left = np.arange(len(before))
+        while True:
+            u, v = (self.vertices[left] - self.vertices[before[left]], self.vertices[after[left]] - self.vertices[left])
+            off = np.full(len(before), np.inf)
+            off[left] = _off(u, v)
+            flattest = (off[left] < off[before[left]]) & (off[left] <= off[after[left]]) & (off[left] <= self.slack)
+            gone = left[flattest]
+            if not len(gone):
+                break
+            after[before[gone]], before[after[gone]] = after[gone], before[gone]
+            left = left[~flattest]
+        number = np.cumsum(np.isin(np.arange(len(before)), left)) - 1
+        return Border(self.vertices[left], number[before[left]], number[after[left]], self.slack)
+
     @property
     def arrays(self) -> tuple[Array, Indices, Indices]:
         """What every kernel takes first."""
@@ -68,6 +90,13 @@ class Border:
     def corners(self) -> Indices:
         """Indices (c,) of the vertices a shortest path can bend at."""
         return np.flatnonzero(self.bends)
+
+
+def _off(u: Array, v: Array) -> Array:
+    """How far (n,) the point between vectors u and v, (n, 2) both, is from the line from their begin to their end."""
+    across = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+    length = np.hypot(*(u + v).T)
+    return np.asarray(np.where(length > 0, across / np.where(length > 0, length, 1.0), np.hypot(*u.T)))
 
 
 def rings(region: shapely.Geometry) -> Iterator[Array]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,12 +14,17 @@ from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.mobile.errors import Blocked
 from pin_metaik.mobile.world.gaps import Contacts, opened
-from pin_metaik.mobile.world.growth import WITHIN, Join, grow
+from pin_metaik.mobile.world.growth import MITRE_LIMIT, WITHIN, Join, grow
 from pin_metaik.mobile.world.scene import Point, Scene
+from pin_metaik.notice import notice
 from pin_metaik.optimize.space import Array
 
+Box = tuple[float, float, float, float]
+
 TOUCH = 1e-10  # of the workspace's width: contact is free, and this is how deep contact may seem by rounding
+ROUNDED = 1e-12  # of the largest coordinate: the same, where a workspace lies so far out that digits run short
 GRID = 0.1  # of that: corners are rounded to a grid so fine, which closes seams
+LARGE = 5_000  # vertices from which on work may take seconds, and says so
 HAIR = 4.0  # of that: half the thickness of a line or point that nothing grows
 
 
@@ -27,9 +33,10 @@ class FreeSpace:
     """The workspace without the obstacles grown by a clearance. Its border belongs to it: touching is free.
 
     One rule for what has no width, however the scene is given. A gap between obstacles, or between an obstacle and a
-    wall, is a way only if it is wider than 2e-10 of the workspace: where two touch, in a line or in a point, there is
-    none. A part of an obstacle that is thinner than that is no obstacle. A line or a point is one, whatever its width:
-    nothing goes through a line. The planners, the exact test and the fitness that counts overlaps all follow it.
+    wall, is a way only if it is wider than 2e-10 of the workspace (or 2e-12 of its largest coordinate, if that is more:
+    there doubles have no finer steps to speak of). Where two touch, in a line or in a point, there is none. A part of
+    an obstacle that is thinner than that is no obstacle. A line or a point is one, whatever its width: nothing goes
+    through a line. The planners, the exact test and the fitness that counts overlaps all follow it.
 
     Attributes:
         scene: The world; its start and goal do not matter here.
@@ -55,31 +62,33 @@ class FreeSpace:
 
         Raises:
             InvalidSetting: A clearance below zero, or no such join.
+            InvalidGeometry: Obstacles whose coordinates are too fine for doubles to be joined.
         """
-        x_min, y_min, x_max, y_max = scene.box
-        touch = TOUCH * _extent(scene.box)
-        flat = [obstacle for obstacle in scene.obstacles if obstacle.geom_type != "Polygon"]
-        solid = [obstacle for obstacle in scene.obstacles if obstacle.geom_type == "Polygon"]
-        grown = [*grow(solid, clearance, join), *grow(flat, max(clearance, HAIR * touch), join)]
-        if x_max - x_min <= 2 * clearance or y_max - y_min <= 2 * clearance:
-            return FreeSpace(scene, clearance, shapely.Polygon(), join)
-        inside = shapely.box(x_min + clearance, y_min + clearance, x_max - clearance, y_max - clearance)
-        region = _without(inside, shapely.union_all(grown), touch)
-        contacts = Contacts.of(region, touch)
-        if len(contacts.corners) or contacts.slivers:
-            closed = shapely.union_all([_beyond(scene.box).difference(region), *contacts.plugs(touch)])
-            region = _without(inside, opened(closed, touch) if contacts.slivers else closed, touch)
+        vertices = int(shapely.get_num_coordinates(scene.obstacles).sum())
+        with notice(f"free space among {vertices:,} vertices") if vertices > LARGE else nullcontext():
+            try:
+                region = _region(scene, clearance, join)
+            except shapely.errors.GEOSException as error:
+                raise InvalidGeometry(
+                    f"the obstacles of {scene.name} cannot be joined ({error}); move them nearer to the origin, or "
+                    "give their coordinates fewer digits"
+                ) from None
         return FreeSpace(scene, clearance, region, join)
+
+    @property
+    def walls(self) -> Box:
+        """The workspace (x_min, y_min, x_max, y_max); of a plane without end, as much as any path may need."""
+        return _walls(self.scene, self.clearance)
 
     @property
     def extent(self) -> float:
         """Width of the workspace, the larger of the two."""
-        return _extent(self.scene.box)
+        return _extent(self.walls)
 
     @property
     def touch(self) -> float:
         """How deep inside an obstacle still counts as touching it."""
-        return TOUCH * self.extent
+        return _touch(self.walls)
 
     @property
     def hair(self) -> float:
@@ -92,16 +101,16 @@ class FreeSpace:
         return self.clearance if obstacle.geom_type == "Polygon" else max(self.clearance, self.hair)
 
     @property
-    def box(self) -> tuple[float, float, float, float]:
+    def box(self) -> Box:
         """The workspace inside its walls (x_min, y_min, x_max, y_max), smaller by the clearance."""
-        x_min, y_min, x_max, y_max = self.scene.box
+        x_min, y_min, x_max, y_max = self.walls
         r = self.clearance
         return x_min + r, y_min + r, x_max - r, y_max - r
 
     @cached_property
     def blocked(self) -> shapely.Geometry:
         """Obstacles and walls as one region."""
-        return _beyond(self.scene.box).difference(self.region)
+        return _beyond(self.walls).difference(self.region)
 
     @cached_property
     def core(self) -> shapely.Geometry:
@@ -170,6 +179,24 @@ class FreeSpace:
         return smaller if FreeSpace.of(self.scene, smaller, "round").connects(start, goal) else None
 
 
+def _region(scene: Scene, clearance: float, join: Join) -> shapely.Geometry:
+    """Where the robot may be: inside the walls, outside what is grown, without contacts and slivers."""
+    box = x_min, y_min, x_max, y_max = _walls(scene, clearance)
+    touch = _touch(box)
+    flat = [obstacle for obstacle in scene.obstacles if obstacle.geom_type != "Polygon"]
+    solid = [obstacle for obstacle in scene.obstacles if obstacle.geom_type == "Polygon"]
+    grown = [*grow(solid, clearance, join), *grow(flat, max(clearance, HAIR * touch), join)]
+    if x_max - x_min <= 2 * clearance or y_max - y_min <= 2 * clearance:
+        return shapely.Polygon()
+    inside = shapely.box(x_min + clearance, y_min + clearance, x_max - clearance, y_max - clearance)
+    region = _without(inside, shapely.union_all(grown), touch)
+    contacts = Contacts.of(region, touch)
+    if len(contacts.corners) or contacts.slivers:
+        closed = shapely.union_all([_beyond(box).difference(region), *contacts.plugs(touch)])
+        region = _without(inside, opened(closed, touch) if contacts.slivers else closed, touch)
+    return region
+
+
 def _without(inside: shapely.Geometry, solid: shapely.Geometry, touch: float) -> shapely.Geometry:
     """The polygons of the inside that are not solid, on a grid, without those that have no width."""
     grid = 10.0 ** math.floor(math.log10(GRID * touch))
@@ -179,7 +206,7 @@ def _without(inside: shapely.Geometry, solid: shapely.Geometry, touch: float) ->
     return shapely.multipolygons(parts[~thin])
 
 
-def _beyond(box: tuple[float, float, float, float]) -> shapely.Polygon:
+def _beyond(box: Box) -> shapely.Polygon:
     """The workspace and as much again on every side."""
     x_min, y_min, x_max, y_max = box
     room = _extent(box)
@@ -195,8 +222,22 @@ def _line(path: Array) -> shapely.LineString:
     points = array("path", path, "n", 2, error=InvalidGeometry, finite=False)
     if len(points) < 2:
         raise InvalidGeometry(f"a path has at least two points, got {len(points)}")
-    return shapely.LineString(points)
+    with np.errstate(invalid="ignore"):
+        return shapely.LineString(points)
 
 
-def _extent(box: tuple[float, float, float, float]) -> float:
+def _walls(scene: Scene, clearance: float) -> Box:
+    """The bounds; without any, room round everything for the tips of grown obstacles and a path round them."""
+    if scene.bounds is not None:
+        return scene.bounds
+    x_min, y_min, x_max, y_max = scene.box
+    room = (MITRE_LIMIT + 1) * clearance
+    return x_min - room, y_min - room, x_max + room, y_max + room
+
+
+def _extent(box: Box) -> float:
     return max(box[2] - box[0], box[3] - box[1])
+
+
+def _touch(box: Box) -> float:
+    return max(TOUCH * _extent(box), ROUNDED * max(map(abs, box)))

@@ -169,7 +169,7 @@ def _read_npy(path: Path) -> NDArray[np.generic]:
         values = np.load(path, allow_pickle=False)
     except OSError as error:
         raise InvalidGeometry(f"cannot read {path}: {error.strerror or error}") from None
-    except (ValueError, EOFError) as error:
+    except Exception as error:  # numpy reads the header as Python, with Python's errors
         raise InvalidGeometry(f"{path} is not an occupancy grid: {error}") from None
     if not isinstance(values, np.ndarray):
         raise InvalidGeometry(f"{path} is not an occupancy grid: it holds several arrays")

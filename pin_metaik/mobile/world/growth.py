@@ -22,6 +22,7 @@ Join = Literal["mitre", "round"]
 MITRE_LIMIT = 5.0  # how many clearances a corner may stick out before its tip is cut
 STRAIGHT = 1e-9  # rad; smaller turns are none
 ARC = math.pi / 16  # rad; the longest arc one corner of a round join stands for
+INWARD = 1 / 16  # of a clearance; how far pieces reach inside: beyond rounding, and no further, as overlaps cost time
 WITHIN = math.cos(ARC / 2)  # obstacles grown with round joins by this share of a clearance lie within the clearance
 
 
@@ -92,7 +93,8 @@ def _collar(ring: Array, clearance: float, widest: float, whole: bool) -> Iterat
         yield shapely.Polygon(np.vstack(list(tips.values())))
         return
     out = clearance * normal
-    yield from shapely.polygons(np.stack((ring - out, after - out, after + out, ring + out), axis=1))  # (n, 4, 2)
+    inward = INWARD * out
+    yield from shapely.polygons(np.stack((ring - inward, after - inward, after + out, ring + out), axis=1))  # (n, 4, 2)
     step = np.minimum(length, clearance)[:, None] / 2 * along
     back, onwards = ring + clearance * before - np.roll(step, 1, axis=0), ring + out + step
     yield from (shapely.Polygon(np.vstack((ring[i], back[i], tip, onwards[i]))) for i, tip in tips.items())

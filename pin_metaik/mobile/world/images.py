@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,6 +13,11 @@ from numpy.typing import NDArray
 
 from pin_metaik.errors import InvalidGeometry, MissingExtra
 from pin_metaik.optimize.space import Array
+
+COMMENT = re.compile(rb"#[^\r\n]*")
+BETWEEN = rb"(?:\s|#[^\r\n]*[\r\n])+"
+HEADER = re.compile(rb"P[25]" + 2 * (BETWEEN + rb"(\d{1,9})") + BETWEEN + rb"(\d{1,9})(?:\s|#[^\r\n]*[\r\n])")
+DEEPEST = 65535  # the largest value of 16 bits
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,15 +67,16 @@ def read_image(path: Path) -> Pixels:
 
 def _pixels(image: Any) -> Pixels:
     """The pixels of Pillow's image: palettes as their colours, 16 bits as 16 bits."""
+    if image.mode == "F":
+        raise ValueError("its pixels are floating-point numbers; save it with 8 or 16 bits")
     if image.mode.startswith("I"):
-        return Pixels(np.asarray(image, dtype=float)[:, :, None] / 65535)
+        grey, clear = np.asarray(image, dtype=float), image.info.get("transparency")
+        return Pixels(grey[:, :, None] / DEEPEST, None if clear is None else (grey != clear).astype(float))
     if image.mode in ("1", "L") and "transparency" not in image.info:
         return Pixels(np.asarray(image.convert("L"), dtype=float)[:, :, None] / 255)
     if image.mode == "RGB" and "transparency" not in image.info:
         return Pixels(np.asarray(image, dtype=float) / 255)
-    opaque = image.mode in ("CMYK", "YCbCr", "HSV", "LAB", "F") or (
-        image.mode == "P" and "transparency" not in image.info
-    )
+    opaque = image.mode in ("CMYK", "YCbCr", "HSV", "LAB") or (image.mode == "P" and "transparency" not in image.info)
     if opaque:
         return Pixels(np.asarray(image.convert("RGB"), dtype=float) / 255)
     channels = np.asarray(image.convert("RGBA"), dtype=float) / 255
@@ -86,30 +93,27 @@ def read_pgm(data: bytes, path: Path) -> NDArray[np.float64]:
     Raises:
         InvalidGeometry: It is not a PGM image.
     """
-    header: list[bytes] = []
-    at = 0
-    while len(header) < 4 and at < len(data):  # magic, columns, rows, maximum; a # starts a comment
-        if data[at : at + 1] == b"#":
-            at = data.find(b"\n", at) % (len(data) + 1)
-        elif data[at : at + 1].isspace():
-            at += 1
-        else:
-            end = next((i for i in range(at, len(data)) if data[i : i + 1].isspace()), len(data))
-            header.append(data[at:end])
-            at = end
-    size = [int(field) if field.isdigit() else 0 for field in header[1:]]
-    if len(size) < 3 or min(size) < 1 or size[2] > 65535:
+    header = HEADER.match(data)
+    columns, rows, maximum = map(int, header.groups()) if header else (0, 0, 0)
+    if header is None or min(columns, rows, maximum) < 1 or maximum > DEEPEST:
         raise InvalidGeometry(f"{path} is not a PGM image: after P2 or P5 come its columns, rows and largest value")
-    columns, rows, maximum = size
-    try:
-        if header[0] == b"P2":
-            pixels = np.array(data[at:].split(), dtype=float)
-        else:
-            deep = np.dtype(np.uint8 if maximum < 256 else ">u2")
-            held = data[at + 1 : at + 1 + rows * columns * deep.itemsize]
-            pixels = np.frombuffer(held[: len(held) // deep.itemsize * deep.itemsize], dtype=deep).astype(float)
-    except ValueError as reason:
-        raise InvalidGeometry(f"{path} is not a PGM image: {reason}") from None
+    held = data[header.end() :]
+    if data[:2] == b"P2":
+        pixels = _plain(held, path)
+    else:
+        deep = np.dtype(np.uint8 if maximum < 256 else ">u2")
+        pixels = np.frombuffer(held, deep, min(rows * columns, len(held) // deep.itemsize)).astype(float)
     if pixels.size < rows * columns:
         raise InvalidGeometry(f"{path} ends early: {pixels.size} pixels for {columns} x {rows}")
-    return pixels[: rows * columns].reshape(rows, columns) / maximum
+    return np.minimum(pixels[: rows * columns].reshape(rows, columns) / maximum, 1.0)
+
+
+def _plain(text: bytes, path: Path) -> NDArray[np.float64]:
+    """The numbers of a plain image, comments left out."""
+    try:
+        pixels = np.array(COMMENT.sub(b"", text).split(), dtype=float)
+    except ValueError as reason:
+        raise InvalidGeometry(f"{path} is not a PGM image: {reason}") from None
+    if not (np.isfinite(pixels) & (pixels >= 0)).all():
+        raise InvalidGeometry(f"{path} is not a PGM image: its pixels are numbers from 0 on")
+    return pixels

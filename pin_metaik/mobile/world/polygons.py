@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import checked, shown
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.mobile.errors import LooksLikeDegrees
 from pin_metaik.mobile.files import read_json, read_text
@@ -22,6 +23,7 @@ COLLECTED = tuple(f"Multi{kind}" for kind in SIMPLE)
 GEOJSON = (*SIMPLE, *COLLECTED, "GeometryCollection", "Feature", "FeatureCollection")
 ACCEPTED = "Polygon, LineString or Point, Multi... of these, GeometryCollection, Feature or FeatureCollection"
 FAR = 10  # extents from the origin: where a map of a few hundredths is likelier to be of degrees than of metres
+FARTHEST = 1e100  # products of larger coordinates are no numbers any more
 
 Found = tuple[BaseGeometry, str]
 
@@ -38,12 +40,12 @@ def read_obstacles(source: Any) -> tuple[BaseGeometry, ...]:
 
     Raises:
         InvalidGeometry: A polygon crosses itself, has no area, fewer than three vertices or numbers that are not
-            finite; a line has no length; or the source holds something else.
+            finite (or beyond 1e100); a line has no length; or the source holds something else.
 
     Warns:
         LooksLikeDegrees: GeoJSON whose coordinates look like longitudes and latitudes; lengths are then in degrees.
     """
-    return tuple(_checked(geometry, place) for geometry, place in _walk(source, "obstacles"))
+    return tuple(_checked(geometry, place) for geometry, place in _found(source, "obstacles"))
 
 
 @checked
@@ -54,11 +56,23 @@ def read_polygons(source: Any) -> tuple[shapely.Polygon, ...]:
         InvalidGeometry: As there; and for lines and points.
     """
     found = []
-    for geometry, place in _walk(source, "polygons"):
+    for geometry, place in _found(source, "polygons"):
         if geometry.geom_type != "Polygon":
             raise InvalidGeometry(f"{place} is a {geometry.geom_type}: an obstacle is a Polygon or a MultiPolygon here")
         found.append(_checked(geometry, place))
     return tuple(found)
+
+
+def _found(source: Any, place: str) -> list[Found]:
+    """All that is in a source; what is GeoJSON as a whole may be in degrees."""
+    try:
+        found = list(_walk(source, place))
+    except RecursionError:
+        raise InvalidGeometry(f"{place} is nested too deeply: give a sequence of obstacles, not of sequences") from None
+    named = str(source).lower().endswith((".geojson", ".json")) if isinstance(source, (str, Path)) else False
+    if named or isinstance(source, Mapping) or _interface(source, place) is not None:
+        _say_if_degrees([geometry for geometry, _ in found], str(source) if named else place)
+    return found
 
 
 def _walk(source: Any, place: str) -> Iterator[Found]:
@@ -74,11 +88,9 @@ def _walk(source: Any, place: str) -> Iterator[Found]:
         case str():
             yield from _wkt(source, place)
         case Mapping():
-            found = list(_geojson(source, place))
-            _say_if_degrees([geometry for geometry, _ in found], place)
-            yield from found
-        case _ if hasattr(source, "__geo_interface__"):
-            yield from _walk(source.__geo_interface__, place)
+            yield from _geojson(source, place)
+        case _ if (mapping := _interface(source, place)) is not None:
+            yield from _geojson(mapping, place)
         case _ if _is_ring(source):
             yield _ring(source, place), place
         case Iterable() if not isinstance(source, np.ndarray) or source.ndim:
@@ -97,16 +109,47 @@ def _read_geojson(path: Path) -> Mapping[str, Any]:
     return content
 
 
-def _wkt(text: str, place: str) -> Iterator[Found]:
-    """One geometry, or one a line."""
-    lines = [line.strip() for line in text.splitlines() if line.strip()]
+def _interface(source: Any, place: str) -> Mapping[str, Any] | None:
+    """What an object of another library says that it is, as GeoJSON; None for one that says nothing."""
+    if isinstance(source, BaseGeometry):
+        return None
     try:
-        yield from _parts(shapely.from_wkt(text), place)
-    except shapely.errors.GEOSException as error:
-        if len(lines) < 2:
-            raise InvalidGeometry(f"{place} is neither WKT nor a .geojson, .json or .wkt file: {error}") from None
-        for i, line in enumerate(lines):
-            yield from _wkt(line, f"{place} line {i + 1}")
+        mapping = getattr(source, "__geo_interface__", None)
+    except Exception as error:  # of anybody's class
+        raise InvalidGeometry(f"{place} has a __geo_interface__ that cannot be read: {error}") from None
+    if mapping is not None and not isinstance(mapping, Mapping):
+        raise InvalidGeometry(f"{place} has a __geo_interface__ that is no GeoJSON mapping: {shown(mapping)}")
+    return mapping
+
+
+def _wkt(text: str, place: str) -> Iterator[Found]:
+    """One geometry after the other, each of one line or more."""
+    pieces = list(_pieces(text))
+    for line, piece in pieces:
+        where = place if len(pieces) == 1 else f"{place} line {line}"
+        try:
+            with np.errstate(invalid="ignore"):
+                geometry = shapely.from_wkt(piece)
+        except (shapely.errors.GEOSException, NotImplementedError) as error:
+            raise InvalidGeometry(f"{where} is neither WKT nor a .geojson, .json or .wkt file: {error}") from None
+        yield from _parts(geometry, where)
+    if not pieces:
+        raise InvalidGeometry(f"{place} is empty: give WKT, e.g. POLYGON ((0 0, 1 0, 1 1, 0 0)), one after the other")
+
+
+def _pieces(text: str) -> Iterator[tuple[int, str]]:
+    """The geometries of a WKT text, each with its first line: one ends with a line that closes all its brackets."""
+    begun, piece, depth = 0, "", 0
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.strip():
+            begun = begun if piece else number
+            piece += f"{line.strip()} "
+            depth += line.count("(") - line.count(")")
+            if depth <= 0 and piece.endswith((") ", "EMPTY ")):
+                yield begun, piece
+                piece, depth = "", 0
+    if piece:
+        yield begun, piece
 
 
 def _geojson(mapping: Any, place: str) -> Iterator[Found]:
@@ -122,7 +165,7 @@ def _geojson(mapping: Any, place: str) -> Iterator[Found]:
                 yield from _geojson(geometry, f"{place} geometry {i}")
         case str(kind) if kind in SIMPLE or kind in COLLECTED:
             try:
-                geometry = shapely.from_geojson(json.dumps(mapping))
+                geometry = shapely.from_geojson(json.dumps(mapping, allow_nan=False))
             except (shapely.errors.GEOSException, TypeError, ValueError, RecursionError) as error:
                 raise InvalidGeometry(f"{place} is not a GeoJSON {kind}: {error}") from None
             yield from _parts(geometry, place)
@@ -153,7 +196,7 @@ def _parts(geometry: BaseGeometry, place: str) -> Iterator[Found]:
 def _is_ring(source: Any) -> bool:
     """Whether it is one list of vertices: what its first element holds first is a number."""
     try:
-        return np.ndim(source[0][0]) == 0 and not isinstance(source[0], (str, Mapping, BaseGeometry))
+        return isinstance(source[0][0], Real) and not isinstance(source[0], (Mapping, bytes))
     except (TypeError, IndexError, KeyError, ValueError):
         return False
 
@@ -174,17 +217,20 @@ def _checked(geometry: BaseGeometry, place: str) -> BaseGeometry:
     kind = geometry.geom_type
     if geometry.is_empty:
         raise InvalidGeometry(f"{place} is empty: a {kind} has at least one vertex, a Polygon three")
-    if not np.isfinite(shapely.get_coordinates(geometry)).all():
+    vertices = shapely.get_coordinates(geometry)
+    if not np.isfinite(vertices).all():
         raise InvalidGeometry(f"{place} has vertices that are not finite")
+    if np.abs(vertices).max() > FARTHEST:
+        raise InvalidGeometry(f"{place} has vertices beyond {FARTHEST:g}: give lengths in a larger unit")
     if kind == "LineString" and not geometry.length > 0:
         raise InvalidGeometry(f"{place} is a line without length: give a Point")
     if kind != "Polygon":
         return geometry
+    if not geometry.convex_hull.area > 0:
+        raise InvalidGeometry(f"{place} has no area: a wall needs a thickness, or is a LineString")
     if not geometry.is_valid:
         why = shapely.is_valid_reason(geometry)
         raise InvalidGeometry(f"{place} is not a simple polygon ({why}); split it, or pass shapely.make_valid of it")
-    if not geometry.area > 0:
-        raise InvalidGeometry(f"{place} has no area: a wall needs a thickness, or is a LineString")
     return geometry
 
 
@@ -202,5 +248,5 @@ def _say_if_degrees(geometries: list[BaseGeometry], place: str) -> None:
             f"the coordinates of {place} look like longitudes and latitudes, as GeoJSON's are: lengths are then in "
             "degrees; project them to metres first",
             LooksLikeDegrees,
-            stacklevel=2,
+            stacklevel=5,  # _found, read_obstacles, its check, who called
         )

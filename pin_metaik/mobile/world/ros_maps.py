@@ -16,6 +16,7 @@ from pin_metaik.mobile.world.images import Pixels, read_image
 Mode = Literal["trinary", "scale", "raw"]
 
 NEEDED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
+FLAGS = (("0", "false", "no", "off", "n"), ("1", "true", "yes", "on", "y"))  # in quotes, too
 UNKNOWN, FREE, OCCUPIED = -1, 0, 100  # percent, as in nav_msgs/OccupancyGrid
 
 
@@ -96,6 +97,7 @@ def _mode(given: Any, place: str) -> Mode:
 
 
 def _flag(given: Any, key: str, place: str) -> bool:
-    if given not in (0, 1):  # False and True among them
-        raise InvalidGeometry(f"{place}: {key} must be true, false, 1 or 0, not {given!r}")
-    return bool(given)
+    for value, words in enumerate(FLAGS):
+        if str(given).lower() in words:
+            return bool(value)
+    raise InvalidGeometry(f"{place}: {key} must be true, false, 1 or 0, not {given!r}")

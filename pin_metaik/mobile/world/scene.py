@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
@@ -15,15 +14,17 @@ from typing import Any
 import shapely
 
 from pin_metaik.arguments import array, checked
-from pin_metaik.errors import InvalidGeometry, UnknownName
+from pin_metaik.errors import InvalidGeometry, InvalidSetting, UnknownName
 from pin_metaik.mobile.files import only, read_json
 from pin_metaik.mobile.world.grids import Unknown, read_grid
-from pin_metaik.mobile.world.polygons import GEOJSON, read_obstacles
+from pin_metaik.mobile.world.polygons import FARTHEST, GEOJSON, read_obstacles
+from pin_metaik.optimize.settings import one_of
 
 Point = tuple[float, float]
 
 KEYS = ("start", "goal", "obstacles", "bounds", "name")
 REMARKS = ("note", "optimal_length", "optimal_path", "hull_optimal_length")  # about a scene; nothing is made of them
+GRIDS = (".npy", ".yaml", ".yml")
 CLOSE = 0.75  # how alike a key of somebody's GeoJSON must be to one of ours to be a slip of the pen
 
 
@@ -63,7 +64,7 @@ class Scene:
             return self.bounds
         everything = shapely.union_all([shapely.MultiPoint([self.start, self.goal]), *self.obstacles])
         x_min, y_min, x_max, y_max = everything.bounds
-        room = max(x_max - x_min, y_max - y_min, 1e-6)
+        room = max(x_max - x_min, y_max - y_min) or 1.0
         return x_min - room, y_min - room, x_max + room, y_max + room
 
     @checked
@@ -113,21 +114,37 @@ def load_scene(
         UnknownName: No such scene.
         InvalidGeometry: The file is missing or malformed, or has a key that nobody would read; or nobody says where the
             start or goal is.
+        InvalidSetting: What is said of grids, of something else.
     """
     path = Path(source)
-    match path.suffix.lower():
-        case ".json":
-            return scene_of(_read(path), path.stem, start, goal)
-        case ".geojson":
+    one_of("unknown", unknown, Unknown)
+    suffix = path.suffix.lower()
+    said = {
+        "unknown": unknown != "blocked",
+        "resolution": resolution is not None,
+        "threshold": threshold is not None,
+        "specks": specks != 1,
+    }
+    if suffix not in GRIDS and any(said.values()):
+        about = ", ".join(key for key, value in said.items() if value)
+        raise InvalidSetting(f"{about}: that is for an occupancy grid ({', '.join(GRIDS)}), and {source} is none")
+    match suffix:
+        case ".json" | ".geojson":
             return scene_of(_read(path), path.stem, start, goal)
         case ".wkt":
             return scene_of({"obstacles": path}, path.stem, start, goal)
         case ".npy" | ".yaml" | ".yml":
             grid = read_grid(path, unknown=unknown, resolution=resolution, threshold=threshold).without_specks(specks)
             return scene_of({"obstacles": grid.polygons, "bounds": grid.bounds}, path.stem, start, goal)
-    if str(source) not in _shipped():
-        raise UnknownName("scene", str(source), _shipped())
-    return scene_of(_read(_shipped()[str(source)]), str(source), start, goal)
+    shipped = _shipped()
+    if str(source) in shipped:
+        return scene_of(_read(shipped[str(source)]), str(source), start, goal)
+    if path.suffix or path.parent != Path():
+        raise InvalidGeometry(
+            f"cannot read {path}: a scene is a .json, obstacles are a .geojson or .wkt, a grid is a .npy or the .yaml "
+            "of a ROS map, which names its image"
+        )
+    raise UnknownName("scene", str(source), shipped)
 
 
 def scene_of(mapping: Mapping[str, Any], name: str = "scene", start: Any = None, goal: Any = None) -> Scene:
@@ -139,10 +156,8 @@ def scene_of(mapping: Mapping[str, Any], name: str = "scene", start: Any = None,
         InvalidGeometry: A key is missing, makes no sense or is one that nobody would read.
     """
     if mapping.get("type") in GEOJSON:
-        foreign = [key for key in mapping if key not in KEYS and get_close_matches(str(key), KEYS, n=1, cutoff=CLOSE)]
-        only(
-            {key: mapping[key] for key in foreign}, KEYS, name, InvalidGeometry
-        )  # others may have members of their own
+        slips = (key for key in mapping if get_close_matches(str(key), KEYS, n=1, cutoff=CLOSE))
+        only(dict.fromkeys(slips), KEYS, name, InvalidGeometry)  # members of somebody's own are none
         mapping = {"obstacles": mapping, **{key: mapping[key] for key in ("start", "goal", "bounds") if key in mapping}}
     else:
         only(mapping, (*KEYS, *REMARKS), name, InvalidGeometry)
@@ -176,16 +191,18 @@ def _point(role: str, value: Any) -> Point:
         x, y = (float(v) for v in value)
     except (TypeError, ValueError, OverflowError):
         raise InvalidGeometry(f"the {role} is a point (x, y), got {value!r}") from None
-    if not (math.isfinite(x) and math.isfinite(y)):
-        raise InvalidGeometry(f"the {role} must be finite, got {value!r}")
+    if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST):
+        raise InvalidGeometry(f"the {role} must be finite, and within {FARTHEST:g}, got {value!r}")
     return x, y
 
 
 def _bounds(value: Any) -> tuple[float, float, float, float]:
     given = array("bounds are (x_min, y_min, x_max, y_max)", value, 4, error=InvalidGeometry, finite=False)
     x_min, y_min, x_max, y_max = given.tolist()
-    if not (x_min < x_max and y_min < y_max and math.isfinite(x_max - x_min) and math.isfinite(y_max - y_min)):
-        raise InvalidGeometry(f"bounds must have x_min < x_max and y_min < y_max, finite; got {value!r}")
+    if not (-FARTHEST <= x_min < x_max <= FARTHEST and -FARTHEST <= y_min < y_max <= FARTHEST):
+        raise InvalidGeometry(
+            f"bounds must have x_min < x_max and y_min < y_max, finite and within {FARTHEST:g}; got {value!r}"
+        )
     return x_min, y_min, x_max, y_max
 
 

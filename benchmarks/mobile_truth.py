@@ -23,7 +23,8 @@ def shortest_length(start, goal, obstacles, bounds) -> float:
         x_min, y_min, x_max, y_max = bounds
         outside = shapely.box(x_min - 1, y_min - 1, x_max + 1, y_max + 1).difference(shapely.box(*bounds))
         solid = shapely.union(solid, outside)
-    core = shapely.union_all([solid.buffer(-1e-9, join_style="mitre"), *contacts(solid)])
+    solid = shapely.union_all([solid, *contacts(solid)])
+    core = solid.buffer(-1e-9, join_style="mitre")
     shapely.prepare(core)
     corners = shapely.get_coordinates(solid)
     if bounds is not None:
@@ -37,11 +38,11 @@ def shortest_length(start, goal, obstacles, bounds) -> float:
 
 
 def contacts(solid) -> list:
-    """Small discs where two rings of a region touch."""
+    """Small squares where two rings of a region touch; a path may bend round them."""
     rings = [ring for part in shapely.get_parts(solid) for ring in (part.exterior, *part.interiors)]
     pairs = [(a, b) for i, a in enumerate(rings) for b in rings[i + 1 :] if a.distance(b) < TOUCH]
     met = [part for a, b in pairs for part in shapely.get_parts(a.buffer(2 * TOUCH).intersection(b))]
-    return [part.centroid.buffer(PLUG) for part in met]
+    return [part.centroid.buffer(PLUG, quad_segs=1) for part in met]
 
 
 def overlapping(rng) -> Scene:
