@@ -148,7 +148,7 @@ class Collection:
         pose = problem.targets[0].pose.homogeneous
         if n > len(problem.rows) or self.known == len(self._found):
             return
-        boxes = problem.chain.boxes(0, pose, 0.0, 0.0, least=half, split=True)
+        boxes = problem.chain._boxes(0, pose, 0.0, 0.0, least=half, split=True)
         if boxes is None:
             return
         kept = boxes.look(self.ledger.left_for_boxes, COVERED)

@@ -139,10 +139,14 @@ class IKProblem:
     @checked
     def gaps(self, t: int) -> tuple[float, float]:
         """How far (m) target number t is proved to be out of reach: the frame itself, and with its orientation."""
-        if not 0 <= t < len(self.targets):
-            raise InvalidSetting(f"t is the number of a target, 0 to {len(self.targets) - 1}, got {t}")
+        self._frame(t)
         oriented = math.isfinite(self.targets[t].allowance[1])
         return self._gap(t, oriented=False), self._gap(t, oriented)
+
+    def _frame(self, t: int) -> None:
+        """Raise InvalidSetting if there is no target number t."""
+        if not 0 <= t < len(self.targets):
+            raise InvalidSetting(f"t is the number of a target, 0 to {len(self.targets) - 1}, got {t}")
 
     def _gap(self, t: int, oriented: bool) -> float:
         return self.chain.reach(t, oriented).gap(self.targets[t].pose, *self.targets[t].allowance)
@@ -184,17 +188,21 @@ class IKProblem:
             return None
         return proof.judge(target.pose.homogeneous, *target.allowance)
 
+    @checked
     def boxes(self, t: int, *, least: float = TINY, split: bool = False) -> Boxes | None:
         """All configurations, to be excluded for target number t; None, where that proves nothing or has no bounds.
 
         A target that frees a translation is looked at for its orientation alone; one that frees two turns, for its
-        position alone. ``least`` and ``split`` as for ``Chain.boxes``.
+        position alone. ``least`` and ``split`` as for ``Chain._boxes``.
         """
+        self._frame(t)
+        if not least > 0.0:
+            raise InvalidSetting(f"least is a half width above 0, got {least!r}")
         target, near = self.targets[t], self.targets[t].allowance[0]
         free = not target.counts[3], not target.counts[4], not target.counts[5]
         if near == math.inf and sum(free) > 1:
             return None
-        return self.chain.boxes(t, target.pose.homogeneous, near, target.tilt, free, least=least, split=split)
+        return self.chain._boxes(t, target.pose.homogeneous, near, target.tilt, free, least=least, split=split)
 
     def near(self, count: int) -> NDArray[np.float64]:
         """Sampled coordinates (count, n) of the chain's atlas with the poses nearest to the targets, nearest first."""

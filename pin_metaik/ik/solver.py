@@ -27,6 +27,7 @@ from pin_metaik.ik.select import SELECT
 from pin_metaik.ik.starts import start_batches
 from pin_metaik.ik.target import DEFAULT_TOLERANCE
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
+from pin_metaik.optimize.settings import whole
 from pin_metaik.randomness import DEFAULT_SEED, Rng, as_generator
 
 Refine: TypeAlias = Callable[[IKProblem, NDArray[np.float64], int], Refinement]
@@ -92,6 +93,7 @@ class IKSolver:
             raise UnknownName("selection", self.select, {"first", *SELECT})
         if self.starts is not None and self.starts < 1:
             raise InvalidSetting(f"starts is at least 1 or None, got {self.starts}")
+        whole("patience", self.patience, 1)
         if not self.budget.ends:
             raise InvalidBudget("this search might never end: give the budget evaluations=... or seconds=...")
 

@@ -296,7 +296,7 @@ class Chain:
         """What decides by the arm's closed form whether it reaches a pose; None, if it has none."""
         return ClosedFormProof.of(self.form, self.paths, self.limits) if len(self.form) else None
 
-    def boxes(
+    def _boxes(
         self,
         tip: int,
         pose: NDArray[np.float64],
@@ -320,7 +320,7 @@ class Chain:
         """
         if self._moves is not None:
             moved = np.linalg.inv(self._moves[tip]) @ pose
-            return self._original.boxes(tip, moved, near, aligned, free, least=least, split=split)
+            return self._original._boxes(tip, moved, near, aligned, free, least=least, split=split)
         if (tip, free) not in self._proof_arms:
             self._proof_arms[tip, free] = proof_arm(self.paths, self.limits, tip, free)
         arm = self._proof_arms[tip, free]

@@ -32,7 +32,7 @@ def test_what_is_not_solved_is_proved_and_nothing_is_both(robot: str) -> None:
         pose[:3, :3] = pin.Quaternion(*rng.normal(size=4)).normalized().matrix()
     solved = mik.solve_ik_batch(chain, poses, solver=mik.IKSolver(budget=mik.Budget(evaluations=600))).success
     for pose, found in zip(poses, solved, strict=True):
-        boxes = chain.boxes(0, pose, 1e-5, 1e-5, least=1e-3)
+        boxes = chain._boxes(0, pose, 1e-5, 1e-5, least=1e-3)
         boxes.look(20_000)
         assert boxes.excluded != found
 
@@ -51,7 +51,7 @@ def test_a_position_that_limits_forbid_is_proved_out_of_reach() -> None:
     def proved(distance: float) -> bool:
         pose = np.eye(4)
         pose[0, 3] = distance
-        boxes = chain.boxes(0, pose, 1e-5, 0.0, (True, True, True), least=1e-3)
+        boxes = chain._boxes(0, pose, 1e-5, 0.0, (True, True, True), least=1e-3)
         boxes.look(5_000)
         return boxes.excluded
 
@@ -68,7 +68,7 @@ def test_every_solution_lies_in_a_leaf_of_the_cover(robot: str) -> None:
     split = n - 3 if arm.arrays[7][0] else n  # the wrist's joints are not split
     for x in chain.box.sample(rng, 3):
         pose = chain.poses(x)[0, 0]
-        boxes = chain.boxes(0, pose, 1e-6, 1e-6, least=0.03)
+        boxes = chain._boxes(0, pose, 1e-6, 1e-6, least=0.03)
         leaves = boxes.look(200_000, 4_000)
         assert boxes.done and not boxes.excluded
         for solution in chain.x(mik.solve_ik_all(chain, pose).q):
