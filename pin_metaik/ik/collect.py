@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import count
 from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.dexterity import singular_values
 from pin_metaik.ik.exclude import Exclusion
 from pin_metaik.ik.gather import SETTINGS, VAIN, VAIN_EACH, gather
 from pin_metaik.ik.ledger import Ledger
@@ -26,6 +28,8 @@ ROOM = 0.1  # of the distance between distinct solutions: tolerances that may mo
 HALF = 0.25  # of it: half width of the boxes that cover all configurations
 COVERED = 4_096  # boxes that a cover may keep; more are a curve of solutions
 FINEST, FINER = 1e-7, 2_000  # rad or m, boxes: how closely a kept box without a solution is looked at
+EXACT = 1e-9  # m and rad
+SINGULAR = 1e-6  # least singular value of a Jacobian below which a solution counts as one of a curve
 TURN = 2.0 * np.pi
 
 
@@ -87,29 +91,32 @@ class Collection:
         if formed is not None and self._by_closed_form(formed.boxes):
             return
         self._by_descents()
-        if formed is None and not self._roomy and len(problem.targets) == 1 and all(problem.targets[0].counts):
+        whole = len(problem.targets) == 1 and all(problem.targets[0].counts)
+        if formed is None and whole and problem.chain.n <= len(problem.rows) and not problem.loose:
+            self._keep_exact()
             self._by_cover()
 
     def _by_closed_form(self, whole: Floats) -> bool:
         """Descend from the branches of the arm's closed form; whether that is all one can do.
 
-        ``whole`` (b, 2 n) are the branches for all that the tolerances accept. Each has its solution in the end, or it
-        is open whether there are more. In a singularity solutions are curves, and branches no places to start from.
+        Each branch that meets the pose exactly has its solution in the end, or it is open whether there are more. Where
+        none does, those are looked at that may do so within the tolerances, ``whole`` (b, 2 n). In a singularity
+        solutions are curves, and branches no places to start from.
         """
-        problem, proof = self.problem, self.problem.chain.form_proof
+        problem, proof, n = self.problem, self.problem.chain.form_proof, self.problem.chain.n
         assert proof is not None
         exact = proof.judge(problem.targets[0].pose.homogeneous, 0.0, 0.0).boxes
-        n = problem.chain.n
-        if (exact[:, n:] > 0.5 * self._apart).any():
-            return False
         starts = problem.branches(self._x0)
+        if any(singular_values(problem.linearize(x)[1])[-1] < SINGULAR for x in starts):
+            return False
         self._descend(starts, len(starts) + 1, branch=False)
-        missing = whole[~self._has_solution(whole)]
+        if (exact[:, n:] > 0.5 * self._apart).any():  # so near to a singularity that rounding hides how many they are
+            return self.known > 0
+        boxes = exact if len(exact) else whole
+        missing = boxes[~self._has_solution(boxes)]
         self._descend(problem.limits.clip(missing[:, :n]), len(missing) + 1, branch=False)
-        boxes = problem.boxes(0, split=True)
-        if boxes is not None and not self._roomy:
-            missing = self._clipped(whole[~self._has_solution(whole)])
-            self.complete = Proof.CLOSED_FORM if self._are_clear(boxes, missing) else None
+        if len(exact) and self._has_solution(exact).all() and not self._roomy:
+            self.complete = Proof.CLOSED_FORM
         return self.known > 0
 
     def _by_descents(self) -> None:
@@ -142,11 +149,29 @@ class Collection:
             ):
                 return
 
+    def _keep_exact(self) -> None:
+        """Take solutions to the pose itself; what comes to the same was within the tolerances, near a singularity."""
+        problem, found = self.problem, self.solutions.copy()
+        target = replace(problem.targets[0], position_tolerance=EXACT, orientation_tolerance=EXACT)
+        exactly = IKProblem.of(problem.chain, [target] if target.frame else target)
+        others, self.known = [], 0
+        for x in found:
+            spent, known, again = gather(
+                exactly, x[None], self._found, self.known, self._apart, 2, self.ledger.left(), branch=False
+            )
+            self.ledger.spent += spent
+            if known == self.known and not again:
+                others.append(x)
+            self.known = known
+        for x in others:  # within the tolerances only, as beyond a limit by less than these
+            if not self._near_solution(np.append(x, 0.0 * x)[None])[0] and self.known < len(self._found):
+                self._found[self.known], self.known = x, self.known + 1
+
     def _by_cover(self) -> None:
         """Cover all configurations with boxes, and look for a solution in each that is kept."""
         problem, n, half = self.problem, self.problem.chain.n, HALF * self._apart
         pose = problem.targets[0].pose.homogeneous
-        if n > len(problem.rows) or self.known == len(self._found):
+        if self.known == len(self._found):
             return
         boxes = problem.chain._boxes(0, pose, 0.0, 0.0, least=half, split=True)
         if boxes is None:
@@ -186,13 +211,6 @@ class Collection:
         """Whether the tolerances leave room for solutions as far apart as distinct ones: then there is no end."""
         slack = self.problem.whole.tasks[:, 12:18]
         return bool((np.abs(slack[np.isfinite(slack)]) > ROOM * self._apart).any())
-
-    def _clipped(self, boxes: Floats) -> Floats:
-        """The part of boxes (b, 2 n) that is inside the limits."""
-        n, (lower, upper) = self.problem.chain.n, (self.problem.limits.lower, self.problem.limits.upper)
-        least = np.clip(boxes[:, :n] - boxes[:, n:], lower, upper)
-        most = np.clip(boxes[:, :n] + boxes[:, n:], lower, upper)
-        return np.hstack([0.5 * (least + most), 0.5 * (most - least)])
 
     def _ways(self, boxes: Floats) -> Floats:
         """(b, s, n) how far each solution is from the centre of each of the boxes (b, 2 n), whole turns aside."""

@@ -12,7 +12,10 @@ FIRST = 500  # evaluations before the first boxes; fewer than 1 of 10,000 random
 FAR = 3e-3  # m and rad: where the nearest is farther away by then, there is mostly nothing to be found
 HEAD, TAIL = 400, 7_000  # evaluations for which no box is looked at, where the nearest is far and where it is near
 LONG, TIMES = 3_000, 10  # evaluations after which, where it is far, boxes are looked at ten at a time
-MANY, FEW = 9, 3_000  # joints from which on more boxes than these prove next to nothing: of talos' nine 2 of 18 targets
+MANY, FEW = (
+    9,
+    3_000,
+)  # joints on the way to a frame, from which on more boxes than these prove next to nothing: of talos' nine 2 of 18 targets
 CHUNK = 1_000  # boxes between two looks at the clock, where Ctrl-C is heard, too
 STARTS = 8  # boxes too small to be split, at a time, that are descended from
 
@@ -31,7 +34,6 @@ class Exclusion:
         self._problem, self._refiner = problem.whole, refiner
         frames = range(len(problem.targets))
         self._boxes = [boxes for t in frames if (boxes := problem.boxes(t)) is not None]
-        self._most = FEW if problem.chain.n >= MANY else ENDLESS
 
     def go_on(self, ledger: Ledger) -> None:
         """Look at the boxes that are due after the evaluations that the search has taken so far."""
@@ -41,17 +43,17 @@ class Exclusion:
     def finish(self, ledger: Ledger) -> None:
         """Look at all boxes that the budget has left, when the search has come to its end."""
         for boxes in self._boxes:
-            self._look(boxes, min(ledger.left_for_boxes, self._most - boxes.looked), ledger)
+            self._look(boxes, ledger.left_for_boxes, ledger)
 
     def _due(self, ledger: Ledger) -> int:
         """How many boxes of a frame may have been looked at by now."""
         searched, far = ledger.searched, ledger.cost > FAR
         due = searched - (HEAD if far else TAIL) if searched >= FIRST else 0
-        return min(TIMES * searched if far and searched >= LONG else due, self._most)
+        return TIMES * searched if far and searched >= LONG else due
 
     def _look(self, boxes: Boxes, most: int, ledger: Ledger) -> None:
         """Look at so many boxes of one frame, and descend from those that are too small to be split."""
-        starts, end = 0, boxes.looked + most
+        starts, end = 0, min(boxes.looked + most, FEW if boxes.arm.movers >= MANY else ENDLESS)
         while boxes.looked < end and starts < STARTS and not (boxes.done or ledger.decided or ledger.late()):
             before = boxes.looked
             small = boxes.look(min(end - before, CHUNK, ledger.left_for_boxes))

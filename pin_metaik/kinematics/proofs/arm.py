@@ -105,6 +105,11 @@ class ProofArm:
         return replace(self, arrays=(joints, wiring, knots, tip, lower, upper, reach, 2 * wrist))
 
     @property
+    def movers(self) -> int:
+        """How many of the chain's coordinates move the tip."""
+        return int((np.unique(self.arrays[1][:, 0]) < self.n).sum())
+
+    @property
     def reach(self) -> float:
         """Greatest distance of two points of the path, m."""
         return float(self.arrays[6][0])
