@@ -102,7 +102,7 @@ class Checker:
             near = placed.near(self._bare, min(reach, best.distance))
             new = [(i, j, own) for i, j, own in near if (i, j) not in done]
             done.update((i, j) for i, j, _ in new)
-            coarse = [(placed.gap(*self._first(*pair)), pair) for pair in new]
+            coarse = [(placed.gap(*self._levels(*pair)[:2]), pair) for pair in new]
             for gap, pair in sorted(coarse):
                 if gap > TOUCH and gap >= best.distance:
                     break  # coarse solids enclose: nothing beyond can be nearer
@@ -116,7 +116,7 @@ class Checker:
         placed = self.solids.place(q)
         total = 0.0
         for i, j, own in placed.near(self.asked):
-            a, b = self._first(i, j, own)
+            a, b, *_ = self._levels(i, j, own)
             gap = placed.gap(a, b)
             if gap <= 0.0 and (a.mesh or b.mesh):
                 gap = self._hulls(placed, i, j).distance
@@ -128,7 +128,7 @@ class Checker:
         placed = self.solids.place(q)
         found = []
         for i, j, own in placed.near(self.asked, NEAR):
-            room = placed.distance(*self._first(i, j, own)) - self._margin(i, j, own)
+            room = placed.distance(*self._levels(i, j, own)[:2]) - self._margin(i, j, own)
             normal = placed.normal
             if room <= NEAR and 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none
                 found.append(Near(room, normal, placed.points, (self._joint(i), self._joint(j))))
@@ -159,31 +159,25 @@ class Checker:
         moving = self.solids.moving
         return (moving[number] if number < len(moving) else self.solids.standing[number - len(moving)]).link
 
-    def _first(self, i: int, j: int, own: int) -> tuple[Level, Level]:
-        """The levels of two bodies that are asked first."""
+    def _levels(self, i: int, j: int, own: int) -> tuple[Level, Level, Level, Level]:
+        """The levels of two bodies that are asked first, and those that have the last word."""
         a, b = self.solids.levels[i], self.solids.levels[j]
+        c, d = a.last[b.flat], b.last[a.flat]
         if own >= 0 and self.direct[own]:
-            return a.last[b.flat], b.last[a.flat]
-        return a.first[b.flat], b.first[a.flat]
-
-    def _last(self, i: int, j: int) -> tuple[Level, Level]:
-        """The levels of two bodies that have the last word."""
-        a, b = self.solids.levels[i], self.solids.levels[j]
-        return a.last[b.flat], b.last[a.flat]
+            return c, d, c, d
+        return a.first[b.flat], b.first[a.flat], c, d
 
     def _collide(self, placed: Placed, i: int, j: int, own: int) -> bool:
         margin = self._margin(i, j, own)
-        a, b = self._first(i, j, own)
-        if not self.exact:
-            return placed.overlap(a, b, margin)
-        c, d = self._last(i, j)
-        if a is c and b is d:
+        a, b, c, d = self._levels(i, j, own)
+        if not self.exact or (a is c and b is d):
             return placed.overlap(a, b, margin)
         return placed.overlap(a, b, margin + ENCLOSED) and placed.overlap(c, d, margin)
 
     def _nearer(self, placed: Placed, i: int, j: int, own: int, best: Distance) -> Distance:
         """The distance of two bodies where it is less than the best, else that."""
-        last = self._last(i, j) if self.exact else self._first(i, j, own)
+        levels = self._levels(i, j, own)
+        last = levels[2:] if self.exact else levels[:2]
         gap = placed.gap(*last)
         if gap > TOUCH and gap >= best.distance:
             return best

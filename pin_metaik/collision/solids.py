@@ -204,11 +204,9 @@ class Placed:
             Numbers of both bodies, and the pair's row in ``pairs.own`` or -1; the likeliest to collide first.
         """
         solids = self.solids
-        scratch = self._boxes, self._found, self._least
-        margins, stood = pairs.margins, solids.stood
-        count = self._near(
-            self.poses, solids.boxes, pairs.own, margins, stood, pairs.against, pairs.margin, beyond, *scratch
-        )
+        own, margins, stood = pairs.own, pairs.margins, solids.stood
+        asked = pairs.against, pairs.margin, beyond
+        count = self._near(self.poses, solids.boxes, own, margins, stood, *asked, self._boxes, self._found, self._least)
         if count > len(self._found):
             self._found, self._least = np.empty((2 * count, 3), dtype=np.int64), np.empty(2 * count)
             return self.near(pairs, beyond)

@@ -46,7 +46,8 @@ def test_what_a_robot_looks_like_is_checked_unless_that_is_refused(tmp_path: Pat
     robot = tmp_path / "seen.urdf"
     box = '<visual><geometry><box size="0.8 0.1 0.1"/></geometry></visual>'
     robot.write_text(
-        f'<robot name="seen"><link name="base">{box}</link><link name="arm">{box}</link><joint name="j" type="revolute">'
+        f'<robot name="seen"><link name="base">{box}</link><link name="arm">{box}</link>'
+        '<joint name="j" type="revolute">'
         '<parent link="base"/><child link="arm"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/>'
         '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>'
     )
