@@ -157,9 +157,8 @@ class Solids:
 
     def place(self, q: NDArray[np.float64]) -> Placed:
         """The bodies where they are at q (nq,); until this thread places them somewhere else."""
-        try:
-            placed: Placed = self._local.placed
-        except AttributeError:
+        placed: Placed | None = getattr(self._local, "placed", None)
+        if placed is None:
             placed = self._local.placed = Placed(self)
         placed.move(q)
         return placed

@@ -31,6 +31,7 @@ def main():
     batch.TRIAL, batch.FORKING, batch.STARTING = 1e-3, 0.0, 0.0
     world = mik.CollisionWorld(mik.load_robot("ur5"))
     Q = random_configurations(world.model, np.random.default_rng(0), int(sys.argv[2]))
+    world.in_collision(Q[0])
     print("begun", flush=True)
     answers = world.in_collision_batch(Q, workers=2)
     print((answers == world.in_collision_batch(Q, workers=1)).all())
