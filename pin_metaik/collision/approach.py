@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import coal
 import numpy as np
@@ -17,6 +17,14 @@ STEPS = 60  # at most
 LONGEST = 0.5  # rad or m, of a step
 SHORTER, HALVINGS = 0.4, 6  # what a step that brings nothing is cut to, and how often
 SETTLED = 1e-4  # m of distance that a step must bring, or the descent ends
+
+
+class _Gap(NamedTuple):
+    """The distance of two hulls (m; minus their depth), its direction (3,) and the nearest points (3,)."""
+
+    distance: float
+    normal: NDArray[np.float64]
+    points: tuple[Any, Any]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,8 +71,7 @@ class Approach:
 
     def distance(self, q: NDArray[np.float64]) -> float:
         """Distance of the two hulls at q (nq,), m; minus their depth where they overlap."""
-        pin.forwardKinematics(self.model, self.data, q)
-        return self._measure()[0]
+        return self._gap(q).distance
 
     def descend(self, q: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
         """The least distance (m) on the way downhill from q (nq,), and where; it ends as soon as the two touch.
@@ -72,36 +79,38 @@ class Approach:
         Each step goes along the gradient as far as would close the gap, if the distance were linear, and is cut until
         it brings something.
         """
-        distance, slope = self._look(q)
+        gap = self._gap(q)
         for _ in range(STEPS):
-            size = float(slope @ slope)
-            if distance <= 0.0 or size == 0.0:
+            if gap.distance <= 0.0:
                 break
-            step = -min(distance / size, LONGEST / float(np.abs(slope).max())) * slope
+            slope = self._slope(q, gap)
+            size = float(slope @ slope)
+            if size == 0.0:
+                break
+            step = -min(gap.distance / size, LONGEST / float(np.abs(slope).max())) * slope
             for _ in range(HALVINGS):
                 tried = self._step(q, step)
-                there = self.distance(tried)
-                if there < distance - SETTLED:
+                there = self._gap(tried)
+                if there.distance < gap.distance - SETTLED:
                     break
                 step = SHORTER * step
             else:
                 break
-            q, (distance, slope) = tried, self._look(tried)
-        return distance, q
+            q, gap = tried, there
+        return gap.distance, q
 
-    def _look(self, q: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
-        """Distance at q (nq,), and its slope along the freedoms that move; 0 along those that a limit holds."""
+    def _slope(self, q: NDArray[np.float64], gap: _Gap) -> NDArray[np.float64]:
+        """The slope of the distance at q (nq,) along the freedoms that move; 0 along those that a limit holds."""
         pin.computeJointJacobians(self.model, self.data, q)
-        distance, normal, points = self._measure()
         slope = np.zeros(self.model.nv)
-        for sign, joint, point in zip((-1.0, 1.0), (self.first.joint, self.second.joint), points, strict=True):
+        for sign, joint, point in zip((-1.0, 1.0), (self.first.joint, self.second.joint), gap.points, strict=True):
             if joint:
                 J = pin.getJointJacobian(self.model, self.data, joint, pin.ReferenceFrame.WORLD)  # (6, nv), at 0
-                slope += sign * np.concatenate([normal, pin.skew(point) @ normal]) @ J
+                slope += sign * np.concatenate([gap.normal, pin.skew(point) @ gap.normal]) @ J
         slope = slope[self.free]
         places, lower, upper = self._limits
         held = ((q[places] <= lower) & (slope > 0.0)) | ((q[places] >= upper) & (slope < 0.0))
-        return distance, np.where(held, 0.0, slope)
+        return np.where(held, 0.0, slope)
 
     def _step(self, q: NDArray[np.float64], step: NDArray[np.float64]) -> NDArray[np.float64]:
         """From q (nq,) along the freedoms that move, inside the limits."""
@@ -110,11 +119,12 @@ class Approach:
         there: NDArray[np.float64] = pin.integrate(self.model, q, v)
         places, lower, upper = self._limits
         mine = places >= 0
-        there[places[mine]] = np.clip(there[places[mine]], lower[mine], upper[mine])
+        there[places[mine]] = np.minimum(np.maximum(there[places[mine]], lower[mine]), upper[mine])
         return there
 
-    def _measure(self) -> tuple[float, NDArray[np.float64], tuple[Any, Any]]:
-        """Distance of the hulls where the joints are placed, its direction (3,) and the nearest points (3,)."""
+    def _gap(self, q: NDArray[np.float64]) -> _Gap:
+        """The gap between the hulls at q (nq,)."""
+        pin.forwardKinematics(self.model, self.data, q)
         poses = []
         for body in (self.first, self.second):
             M = self.data.oMi[body.joint] * body.placement
@@ -122,4 +132,4 @@ class Approach:
         result = coal.DistanceResult()
         hulls = self.first.solid.hull, self.second.solid.hull
         distance = coal.distance(hulls[0], poses[0], hulls[1], poses[1], coal.DistanceRequest(), result)
-        return distance, np.array(result.normal), (result.getNearestPoint1(), result.getNearestPoint2())
+        return _Gap(distance, np.array(result.normal), (result.getNearestPoint1(), result.getNearestPoint2()))

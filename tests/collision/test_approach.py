@@ -22,7 +22,7 @@ def test_the_slope_of_a_distance_is_that_of_finite_differences(name: str) -> Non
     errors = []
     for q in configurations(name, 40):
         approach = approaches(name)[rng.integers(len(approaches(name)))]
-        distance, slope = approach._look(q)
+        distance, slope = approach._gap(q).distance, approach._slope(q, approach._gap(q))
         if distance < 0.01:
             continue
         steps = 1e-3 * np.eye(model.nv)[approach.free]
