@@ -1,3 +1,5 @@
+"""Kind 23: links that are left out, as they never touch, are looked for by going downhill in their distance."""
+
 import numpy as np
 import pinocchio as pin
 import pytest
