@@ -84,7 +84,7 @@ class CollisionWorld:
                 quicker, and calls some configurations collisions that are none.
             padding: What is added to the margin, m: by the name of a link or obstacle, in all pairs of it, so that the
                 paddings of two add up; by two names, in that pair, instead of theirs. Such as
-                ``{"panda_hand": 0.02, ("panda_hand", "table"): 0.05}``; obstacles may bring their own.
+                ``{"panda_hand": 0.02, ("panda_hand", "table"): 0.05}``. It goes before what obstacles bring.
             visual: Check what a robot without collision geometry looks like, with a warning; otherwise refuse it.
 
         Raises:
@@ -113,6 +113,7 @@ class CollisionWorld:
         given = tuple(obstacles)
         self._take_in([(obstacle, 0, obstacle.pose) for obstacle in given])
         self.obstacles = given
+        check_padding(self.padding, self.disabled)
         for key in self.padding:
             for name in names_of(key):
                 if name not in self.names:
@@ -337,7 +338,7 @@ class CollisionWorld:
             if obstacle.name in names:
                 raise InvalidGeometry(f"there is a {obstacle.name!r} in the world already")
             names[obstacle.name] = None
-        disabled, padding = dict(self.disabled), dict(self.padding)
+        disabled, padding = dict(self.disabled), dict[Key, float]()
         for obstacle, _, _ in new:
             away = obstacle.padding if isinstance(obstacle.padding, Mapping) else {}
             for other in (*obstacle.touching, *away):
@@ -346,6 +347,7 @@ class CollisionWorld:
             disabled |= {pair_of(obstacle.name, other): "Touching" for other in obstacle.touching}
             padding |= entries(obstacle.name, obstacle.padding)
         check_padding(padding, disabled)
+        padding |= self.padding  # what was given to the world goes before what an obstacle brings
         bodies = {
             obstacle.name: Body(
                 obstacle.name, joint, at, solid_of(obstacle.shape.geometry(), self.simplify, robot=False)

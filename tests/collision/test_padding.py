@@ -163,6 +163,18 @@ def test_what_is_held_or_added_brings_its_padding_and_takes_it_along() -> None:
     assert world.padding == {"wall": 0.02, "peg": 0.01}
 
 
+def test_what_is_given_to_the_world_goes_before_what_an_obstacle_brings_and_can_be_allowed() -> None:
+    robot, ball = gantry("gantry, box"), Obstacle("ball", Sphere(0.05), (0.0, 0.0, 0.0), padding={"tool": 0.03})
+    world = mik.CollisionWorld(robot, [ball], padding={("tool", "ball"): 0.02})
+    assert world.padding == {("ball", "tool"): 0.02}
+    assert ends(world, 0.0, 0.39) == pytest.approx(0.12, abs=1e-5)
+    world.allow("tool", "ball")
+    world.add(Obstacle("far", Sphere(0.05), (5.0, 0.0, 0.0), padding=0.01))  # no complaint of what was allowed
+    assert not world.in_collision(at(0.0))
+    world.check("tool", "ball")
+    assert ends(world, 0.0, 0.39) == pytest.approx(0.12, abs=1e-5)
+
+
 def ends_at(world: mik.CollisionWorld) -> float:
     """How far the slide goes along x."""
     low, high = -0.39, 0.39
