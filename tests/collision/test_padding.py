@@ -122,6 +122,8 @@ def test_solutions_batches_and_paths_keep_the_padding() -> None:
     assert mik.solve_ik(chain, near, world=world).status is mik.IKStatus.IN_COLLISION
     assert mik.solve_ik(chain, far, world=world).success
     assert mik.solve_ik_batch(chain, [near, far], world=world).success.tolist() == [False, True]
+    assert mik.solve_ik_path(chain, [[0.3, 0.0, 0.0], far], world=world).success.all()
+    assert not mik.solve_ik_path(chain, [[0.3, 0.0, 0.0], near], world=world).success.all()
 
 
 def test_a_search_among_padded_obstacles_ends_where_they_are_kept() -> None:
