@@ -69,6 +69,14 @@ class Approach:
         lower = np.where(places < 0, -np.inf, self.model.lowerPositionLimit[places])
         return places, lower, np.where(places < 0, np.inf, self.model.upperPositionLimit[places])
 
+    @cached_property
+    def _placed(self) -> tuple[pin.GeometryModel, pin.GeometryData]:
+        """What Pinocchio places: the two hulls."""
+        geometry = pin.GeometryModel()
+        for name, body in (("first", self.first), ("second", self.second)):
+            geometry.addGeometryObject(pin.GeometryObject(name, body.joint, body.placement, body.solid.hull))
+        return geometry, geometry.createData()
+
     def distance(self, q: NDArray[np.float64]) -> float:
         """Distance of the two hulls at q (nq,), m; minus their depth where they overlap."""
         return self._gap(q).distance
@@ -124,11 +132,9 @@ class Approach:
 
     def _gap(self, q: NDArray[np.float64]) -> _Gap:
         """The gap between the hulls at q (nq,)."""
-        pin.forwardKinematics(self.model, self.data, q)
-        poses = []
-        for body in (self.first, self.second):
-            M = self.data.oMi[body.joint] * body.placement
-            poses.append(coal.Transform3s(M.rotation, M.translation))
+        geometry, shapes = self._placed
+        pin.updateGeometryPlacements(self.model, self.data, geometry, shapes, q)
+        poses = [coal.Transform3s(M.rotation, M.translation) for M in shapes.oMg]
         result = coal.DistanceResult()
         hulls = self.first.solid.hull, self.second.solid.hull
         distance = coal.distance(hulls[0], poses[0], hulls[1], poses[1], coal.DistanceRequest(), result)

@@ -6,6 +6,7 @@ a check nothing until something comes near.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -211,6 +212,13 @@ class Placed:
             return self.near(pairs, beyond)
         found: list[list[int]] = self._found[:count].tolist() if count else []
         return found
+
+    def bounds(self, pairs: Pairs) -> NDArray[np.float64]:
+        """Distances (p,) that the pairs that move are at least apart by their boxes, m; below 0 where these overlap."""
+        rows = [row for _, _, row in self.near(pairs, math.inf)]
+        bounds = np.empty(len(rows))
+        bounds[rows] = self._least[: len(rows)]
+        return bounds
 
     def overlap(self, a: Level, b: Level, margin: float) -> bool:
         """Whether two bodies are no farther apart than a margin (m), or one lies inside the other."""
