@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import coal
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from pin_metaik.collision.body import Body
+from pin_metaik.collision.solids import Level, Solids
 
 STEPS = 60  # at most
 LONGEST = 0.5  # rad or m, of a step
@@ -24,7 +23,7 @@ class _Gap(NamedTuple):
 
     distance: float
     normal: NDArray[np.float64]
-    points: tuple[Any, Any]
+    points: tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,16 +31,24 @@ class Approach:
     """Two bodies that joints move against each other.
 
     Attributes:
-        model: The robot's model.
-        data: Room for its kinematics.
-        first: One body.
-        second: The other.
+        solids: The bodies of the robot.
+        first: Number of the one.
+        second: Number of the other.
     """
 
-    model: pin.Model
-    data: pin.Data
-    first: Body
-    second: Body
+    solids: Solids
+    first: int
+    second: int
+
+    @property
+    def model(self) -> pin.Model:
+        """The robot's model."""
+        return self.solids.model
+
+    @property
+    def links(self) -> tuple[str, str]:
+        """Names of the two links."""
+        return self.solids.moving[self.first].link, self.solids.moving[self.second].link
 
     @property
     def several(self) -> bool:
@@ -55,9 +62,19 @@ class Approach:
         return np.array(sorted(freedoms), dtype=np.int64)
 
     @cached_property
+    def _carriers(self) -> tuple[int, int]:
+        """Ids of the joints that carry the two."""
+        return self.solids.moving[self.first].joint, self.solids.moving[self.second].joint
+
+    @cached_property
+    def _hulls(self) -> tuple[Level, Level]:
+        return self.solids.levels[self.first].hull, self.solids.levels[self.second].hull
+
+    @cached_property
     def _joints(self) -> list[pin.JointModel]:
         """The joints between the two; for one that follows another, that one."""
-        between = set(self.model.supports[self.first.joint]) ^ set(self.model.supports[self.second.joint])
+        first, second = self._carriers
+        between = set(self.model.supports[first]) ^ set(self.model.supports[second])
         leaders = dict(zip(self.model.mimicking_joints, self.model.mimicked_joints, strict=True))
         return [self.model.joints[leaders.get(joint, joint)] for joint in sorted(between)]
 
@@ -68,14 +85,6 @@ class Approach:
         places = np.array([bounded.get(int(k), -1) for k in self.free], dtype=np.int64)
         lower = np.where(places < 0, -np.inf, self.model.lowerPositionLimit[places])
         return places, lower, np.where(places < 0, np.inf, self.model.upperPositionLimit[places])
-
-    @cached_property
-    def _placed(self) -> tuple[pin.GeometryModel, pin.GeometryData]:
-        """What Pinocchio places: the two hulls."""
-        geometry = pin.GeometryModel()
-        for name, body in (("first", self.first), ("second", self.second)):
-            geometry.addGeometryObject(pin.GeometryObject(name, body.joint, body.placement, body.solid.hull))
-        return geometry, geometry.createData()
 
     def distance(self, q: NDArray[np.float64]) -> float:
         """Distance of the two hulls at q (nq,), m; minus their depth where they overlap."""
@@ -109,12 +118,15 @@ class Approach:
 
     def _slope(self, q: NDArray[np.float64], gap: _Gap) -> NDArray[np.float64]:
         """The slope of the distance at q (nq,) along the freedoms that move; 0 along those that a limit holds."""
-        pin.computeJointJacobians(self.model, self.data, q)
+        data = self.solids.place(q).data
+        pin.computeJointJacobians(self.model, data, q)
         slope = np.zeros(self.model.nv)
-        for sign, joint, point in zip((-1.0, 1.0), (self.first.joint, self.second.joint), gap.points, strict=True):
+        a, b, c = gap.normal.tolist()
+        for sign, joint, point in zip((-1.0, 1.0), self._carriers, gap.points, strict=True):
             if joint:
-                J = pin.getJointJacobian(self.model, self.data, joint, pin.ReferenceFrame.WORLD)  # (6, nv), at 0
-                slope += sign * np.concatenate([gap.normal, pin.skew(point) @ gap.normal]) @ J
+                J = pin.getJointJacobian(self.model, data, joint, pin.ReferenceFrame.WORLD)  # (6, nv), at 0
+                x, y, z = point.tolist()
+                slope += sign * (np.array([a, b, c, y * c - z * b, z * a - x * c, x * b - y * a]) @ J)
         slope = slope[self.free]
         places, lower, upper = self._limits
         held = ((q[places] <= lower) & (slope > 0.0)) | ((q[places] >= upper) & (slope < 0.0))
@@ -132,10 +144,6 @@ class Approach:
 
     def _gap(self, q: NDArray[np.float64]) -> _Gap:
         """The gap between the hulls at q (nq,)."""
-        geometry, shapes = self._placed
-        pin.updateGeometryPlacements(self.model, self.data, geometry, shapes, q)
-        poses = [coal.Transform3s(M.rotation, M.translation) for M in shapes.oMg]
-        result = coal.DistanceResult()
-        hulls = self.first.solid.hull, self.second.solid.hull
-        distance = coal.distance(hulls[0], poses[0], hulls[1], poses[1], coal.DistanceRequest(), result)
-        return _Gap(distance, np.array(result.normal), (result.getNearestPoint1(), result.getNearestPoint2()))
+        placed = self.solids.place(q)
+        distance = placed.distance(*self._hulls)
+        return _Gap(distance, placed.normal, placed.points)

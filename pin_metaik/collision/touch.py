@@ -83,8 +83,7 @@ def _sample(
     solids = Solids(model, bodies)
     levels = [(solids.levels[i], solids.levels[j]) for i, j in pieces]
     hulls, originals = [(a.hull, b.hull) for a, b in levels], [(a.fine, b.fine) for a, b in levels]
-    data = model.createData()
-    approaches = [Approach(model, data, bodies[i], bodies[j]) for i, j in pieces]
+    approaches = [Approach(solids, i, j) for i, j in pieces]
     distances, by_link = np.full((SAMPLES, len(pieces)), np.inf), np.full((SAMPLES, count), np.inf)
     nearest = np.full((STARTS, len(pieces)), np.inf)  # distances of each pair: no start is farther away
     apart = np.zeros((len(bodies), 0), dtype=bool)
