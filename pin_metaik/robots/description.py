@@ -140,7 +140,7 @@ class Description:
         tree = self.tree()
         if wrong := negative_sizes(tree, shapes):
             raise InvalidModel(
-                f"the {shapes} geometry of {self.what} has a size below zero or without end: {'; '.join(wrong)}"
+                f"the {shapes} geometry of {self.what} has a size that is infinite or below zero: {'; '.join(wrong)}"
             )
         shaped, counts = shapes_of(tree, shapes)
         text = ET.tostring(shaped, encoding="unicode")
