@@ -21,6 +21,7 @@ from rich.progress import track
 import pin_metaik as mik
 from pin_metaik.collision.approach import Approach
 from pin_metaik.collision.body import robot_bodies
+from pin_metaik.collision.solids import Solids
 from pin_metaik.collision.srdf import pair_of
 from pin_metaik.collision.touch import random_configurations
 
@@ -55,16 +56,16 @@ def search(name: str, count: int) -> str:
     disabled = mik.CollisionWorld(robot, srdf=False).disabled
     seconds = time.process_time() - began
     never = {pair for pair, reason in disabled.items() if reason == "Never"}
-    bodies, data = robot_bodies(robot, "convex"), robot.model.createData()
+    solids = Solids(robot.model, robot_bodies(robot, "convex"))
     approaches = [
-        Approach(robot.model, data, a, b)
-        for j, b in enumerate(bodies)
-        for a in bodies[:j]
+        Approach(solids, i, j)
+        for j, b in enumerate(solids.moving)
+        for i, a in enumerate(solids.moving[:j])
         if a.joint != b.joint and pair_of(a.link, b.link) in never
     ]
     each, least = max(1, count // len(approaches)), dict.fromkeys(never, np.inf)
     for approach in track(approaches, name, transient=True):
-        pair = pair_of(approach.first.link, approach.second.link)
+        pair = pair_of(*approach.links)
         for q in random_configurations(robot.model, rng, each):
             least[pair] = min(least[pair], approach.descend(q)[0])
     distances = np.array(list(least.values()))

@@ -67,6 +67,9 @@ def solve(
     allow: Annotated[
         list[str] | None, typer.Option(metavar="A,B", help="In the world: a pair that may collide; may be repeated.")
     ] = None,
+    visual: Annotated[
+        bool, typer.Option(help="In the world: check what a robot looks like, if it has no collision geometry.")
+    ] = True,
     margin: Annotated[float | None, typer.Option(help="Distance to keep from everything in the world, m.")] = None,
     rng: Annotated[int, typer.Option(min=0, help="Seed of every random choice.")] = 0,
     in_degrees: Annotated[bool, typer.Option("--degrees", help="Angles in degrees, given and shown.")] = False,
@@ -75,7 +78,7 @@ def solve(
     """Solve for one target. Exit code 0: solved, 1: not solved, 2: the call makes no sense."""
     if position is None and rpy is None:
         raise InvalidTarget("nothing to reach: give --position X Y Z, --rpy R P Y, or both")
-    for option, value in (("--margin", margin), ("--srdf", srdf), ("--allow", allow)):
+    for option, value in (("--margin", margin), ("--srdf", srdf), ("--allow", allow), ("--no-visual", not visual)):
         if value and world is None:
             raise InvalidSetting(f"{option} is about a world: give --world, too, e.g. --world {ALONE}")
     loaded = load_robot(robot)
@@ -86,7 +89,7 @@ def solve(
         None if refiner == "none" else refiner,
         Budget(evaluations=evaluations),
     )
-    obstacles = None if world is None else _world(loaded, world, margin or 0.0, srdf, allow or ())
+    obstacles = None if world is None else _world(loaded, world, margin or 0.0, srdf, allow or (), visual)
     target = _target(position, rpy, in_degrees)
     if not in_degrees and any(abs(angle) > tau for angle in rpy or ()):
         print("pin-metaik: --rpy is in radians; for degrees give --degrees, too", file=sys.stderr)
@@ -99,9 +102,11 @@ def solve(
     raise typer.Exit(0 if result.success else 1)
 
 
-def _world(robot: Robot, scene: str, margin: float, srdf: str | None, allowed: Iterable[str]) -> CollisionWorld:
+def _world(
+    robot: Robot, scene: str, margin: float, srdf: str | None, allowed: Iterable[str], visual: bool
+) -> CollisionWorld:
     """The robot among the obstacles of a scene, or alone."""
-    world = CollisionWorld(robot, () if scene == ALONE else load_scene(scene), margin, srdf)
+    world = CollisionWorld(robot, () if scene == ALONE else load_scene(scene), margin, srdf, visual=visual)
     for pair in allowed:
         names = split([pair])
         if len(names) != 2:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import NamedTuple
 
-import coal
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from pin_metaik.collision.body import Body
+from pin_metaik.collision.solids import Level, Solids
 
 STEPS = 60  # at most
 LONGEST = 0.5  # rad or m, of a step
@@ -19,21 +18,37 @@ SHORTER, HALVINGS = 0.4, 6  # what a step that brings nothing is cut to, and how
 SETTLED = 1e-4  # m of distance that a step must bring, or the descent ends
 
 
+class _Gap(NamedTuple):
+    """The distance of two hulls (m; minus their depth), its direction (3,) and the nearest points (3,)."""
+
+    distance: float
+    normal: NDArray[np.float64]
+    points: tuple[NDArray[np.float64], NDArray[np.float64]]
+
+
 @dataclass(frozen=True, eq=False)
 class Approach:
     """Two bodies that joints move against each other.
 
     Attributes:
-        model: The robot's model.
-        data: Room for its kinematics.
-        first: One body.
-        second: The other.
+        solids: The bodies of the robot.
+        first: Number of the one.
+        second: Number of the other.
     """
 
-    model: pin.Model
-    data: pin.Data
-    first: Body
-    second: Body
+    solids: Solids
+    first: int
+    second: int
+
+    @property
+    def model(self) -> pin.Model:
+        """The robot's model."""
+        return self.solids.model
+
+    @property
+    def links(self) -> tuple[str, str]:
+        """Names of the two links."""
+        return self.solids.moving[self.first].link, self.solids.moving[self.second].link
 
     @property
     def several(self) -> bool:
@@ -47,9 +62,19 @@ class Approach:
         return np.array(sorted(freedoms), dtype=np.int64)
 
     @cached_property
+    def _carriers(self) -> tuple[int, int]:
+        """Ids of the joints that carry the two."""
+        return self.solids.moving[self.first].joint, self.solids.moving[self.second].joint
+
+    @cached_property
+    def _hulls(self) -> tuple[Level, Level]:
+        return self.solids.levels[self.first].hull, self.solids.levels[self.second].hull
+
+    @cached_property
     def _joints(self) -> list[pin.JointModel]:
         """The joints between the two; for one that follows another, that one."""
-        between = set(self.model.supports[self.first.joint]) ^ set(self.model.supports[self.second.joint])
+        first, second = self._carriers
+        between = set(self.model.supports[first]) ^ set(self.model.supports[second])
         leaders = dict(zip(self.model.mimicking_joints, self.model.mimicked_joints, strict=True))
         return [self.model.joints[leaders.get(joint, joint)] for joint in sorted(between)]
 
@@ -63,8 +88,7 @@ class Approach:
 
     def distance(self, q: NDArray[np.float64]) -> float:
         """Distance of the two hulls at q (nq,), m; minus their depth where they overlap."""
-        pin.forwardKinematics(self.model, self.data, q)
-        return self._measure()[0]
+        return self._gap(q).distance
 
     def descend(self, q: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
         """The least distance (m) on the way downhill from q (nq,), and where; it ends as soon as the two touch.
@@ -72,36 +96,41 @@ class Approach:
         Each step goes along the gradient as far as would close the gap, if the distance were linear, and is cut until
         it brings something.
         """
-        distance, slope = self._look(q)
+        gap = self._gap(q)
         for _ in range(STEPS):
-            size = float(slope @ slope)
-            if distance <= 0.0 or size == 0.0:
+            if gap.distance <= 0.0:
                 break
-            step = -min(distance / size, LONGEST / float(np.abs(slope).max())) * slope
+            slope = self._slope(q, gap)
+            size = float(slope @ slope)
+            if size == 0.0:
+                break
+            step = -min(gap.distance / size, LONGEST / float(np.abs(slope).max())) * slope
             for _ in range(HALVINGS):
                 tried = self._step(q, step)
-                there = self.distance(tried)
-                if there < distance - SETTLED:
+                there = self._gap(tried)
+                if there.distance < gap.distance - SETTLED:
                     break
                 step = SHORTER * step
             else:
                 break
-            q, (distance, slope) = tried, self._look(tried)
-        return distance, q
+            q, gap = tried, there
+        return gap.distance, q
 
-    def _look(self, q: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
-        """Distance at q (nq,), and its slope along the freedoms that move; 0 along those that a limit holds."""
-        pin.computeJointJacobians(self.model, self.data, q)
-        distance, normal, points = self._measure()
+    def _slope(self, q: NDArray[np.float64], gap: _Gap) -> NDArray[np.float64]:
+        """The slope of the distance at q (nq,) along the freedoms that move; 0 along those that a limit holds."""
+        data = self.solids.place(q).data
+        pin.computeJointJacobians(self.model, data, q)
         slope = np.zeros(self.model.nv)
-        for sign, joint, point in zip((-1.0, 1.0), (self.first.joint, self.second.joint), points, strict=True):
+        a, b, c = gap.normal.tolist()
+        for sign, joint, point in zip((-1.0, 1.0), self._carriers, gap.points, strict=True):
             if joint:
-                J = pin.getJointJacobian(self.model, self.data, joint, pin.ReferenceFrame.WORLD)  # (6, nv), at 0
-                slope += sign * np.concatenate([normal, pin.skew(point) @ normal]) @ J
+                J = pin.getJointJacobian(self.model, data, joint, pin.ReferenceFrame.WORLD)  # (6, nv), at 0
+                x, y, z = point.tolist()
+                slope += sign * (np.array([a, b, c, y * c - z * b, z * a - x * c, x * b - y * a]) @ J)
         slope = slope[self.free]
         places, lower, upper = self._limits
         held = ((q[places] <= lower) & (slope > 0.0)) | ((q[places] >= upper) & (slope < 0.0))
-        return distance, np.where(held, 0.0, slope)
+        return np.where(held, 0.0, slope)
 
     def _step(self, q: NDArray[np.float64], step: NDArray[np.float64]) -> NDArray[np.float64]:
         """From q (nq,) along the freedoms that move, inside the limits."""
@@ -110,16 +139,11 @@ class Approach:
         there: NDArray[np.float64] = pin.integrate(self.model, q, v)
         places, lower, upper = self._limits
         mine = places >= 0
-        there[places[mine]] = np.clip(there[places[mine]], lower[mine], upper[mine])
+        there[places[mine]] = np.minimum(np.maximum(there[places[mine]], lower[mine]), upper[mine])
         return there
 
-    def _measure(self) -> tuple[float, NDArray[np.float64], tuple[Any, Any]]:
-        """Distance of the hulls where the joints are placed, its direction (3,) and the nearest points (3,)."""
-        poses = []
-        for body in (self.first, self.second):
-            M = self.data.oMi[body.joint] * body.placement
-            poses.append(coal.Transform3s(M.rotation, M.translation))
-        result = coal.DistanceResult()
-        hulls = self.first.solid.hull, self.second.solid.hull
-        distance = coal.distance(hulls[0], poses[0], hulls[1], poses[1], coal.DistanceRequest(), result)
-        return distance, np.array(result.normal), (result.getNearestPoint1(), result.getNearestPoint2())
+    def _gap(self, q: NDArray[np.float64]) -> _Gap:
+        """The gap between the hulls at q (nq,)."""
+        placed = self.solids.place(q)
+        distance = placed.distance(*self._hulls)
+        return _Gap(distance, placed.normal, placed.points)

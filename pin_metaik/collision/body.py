@@ -57,7 +57,7 @@ class Body:
 
     @cached_property
     def stood(self) -> NDArray[np.float64]:
-        """(16,) its box in the joint's frame, as ``boxes.near`` takes what stands."""
+        """(16,) its box in the joint's frame, as ``boxes.near`` takes what stands, but for the padding."""
         return stand(self.solid.original, self.solid.box, self.row)
 
 
@@ -109,15 +109,15 @@ def geometry_of(robot: Geometry) -> Geometry:
     return _Wrapped(model.name, model, robot.collision_model)
 
 
-def robot_bodies(robot: Geometry, simplify: Simplify) -> tuple[Body, ...]:
-    """The pieces of a robot's collision geometry; where it has none, of what it looks like, which a warning says.
+def robot_bodies(robot: Geometry, simplify: Simplify, visual: bool = True) -> tuple[Body, ...]:
+    """The pieces of a robot's collision geometry; where it has none, of its ``visual`` geometry, which a warning says.
 
     Raises:
         InvalidGeometry: If it has neither: then nothing it does could be called free of collisions; or if a piece is
             not finite or empty; the message names it.
         InvalidModel: If a mesh is missing or unreadable.
     """
-    pieces = _pieces(robot)
+    pieces = _pieces(robot, visual)
     bodies = []
     meshes = sum(isinstance(piece.geometry, coal.BVHModelBase) for piece in pieces)
     with notice(f"simplifying {meshes} meshes of {robot.name}, once; {where_kept()}", len(pieces)) as line:
@@ -131,12 +131,16 @@ def robot_bodies(robot: Geometry, simplify: Simplify) -> tuple[Body, ...]:
     return tuple(bodies)
 
 
-def _pieces(robot: Geometry) -> list[Any]:
-    """Geometry objects of Pinocchio: the robot's collision geometry, else its visual geometry."""
+def _pieces(robot: Geometry, visual: bool) -> list[Any]:
+    """Geometry objects of Pinocchio: the robot's collision geometry, else, if wanted, its visual geometry."""
     with notice(f"reading the geometry of {robot.name}"):
         pieces = list(robot.collision_model.geometryObjects)
         if pieces:
             return pieces
+        if not visual:
+            raise InvalidGeometry(
+                f"{robot.name} has no collision geometry, and its visual geometry is not to be checked"
+            )
         seen = getattr(robot, "visual_model", None)
         pieces = [] if seen is None else list(seen.geometryObjects)
     if not pieces:

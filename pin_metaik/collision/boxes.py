@@ -5,8 +5,9 @@ axes of both, and the cross products of one axis of each (Gottschalk, Lin and Ma
 further look, so that a check costs what is near, not what there is.
 
 * ``poses`` (m, 12): where each moving solid is: its rotation column by column, then its translation.
-* ``boxes`` (m, 7): box of each in its own frame: centre, half of its edges, radius of its ball.
-* ``standing`` (s, 16): box of what stands, in the world: centre, axes one by one, half of the edges, radius.
+* ``boxes`` (m, 8): box of each in its own frame: centre, half of its edges, radius of its ball; and its padding, which
+  is added to the margin against what stands.
+* ``standing`` (s, 17): box of what stands, in the world: centre, axes one by one, half of the edges, radius; padding.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from pin_metaik.compiled import Floats, Ints, inline, jit
 Flags = NDArray[np.bool_]
 
 SLACK = 1e-9  # m that boxes count as larger, for roundings
-PARALLEL = 1e-6  # length of a cross product below which its axes are parallel, and part nothing that they do not
+PARALLEL = 1e-12  # square of a cross product below which its axes are parallel, and part nothing that they do not
 
 
 @inline
@@ -32,13 +33,14 @@ def dot(a: Floats, i: int, b: Floats, j: int) -> float:
 
 @inline
 def put(pose: Floats, box: Floats, placed: Floats) -> None:
-    """Where a box is whose solid has this pose (12,), as a row (16,) of ``standing``."""
+    """Where a box is whose solid has this pose (12,), as a row (17,) of ``standing``."""
     for k in range(3):
         placed[k] = pose[9 + k] + pose[k] * box[0] + pose[3 + k] * box[1] + pose[6 + k] * box[2]
         placed[12 + k] = box[3 + k]
     for k in range(9):
         placed[3 + k] = pose[k]
     placed[15] = box[6]
+    placed[16] = box[7]
 
 
 @inline
@@ -66,19 +68,21 @@ def parted(a: Floats, b: Floats, reach: float) -> float:
     gap -= SLACK
     if gap > reach:
         return math.inf
+    if math.isinf(a[15]) or math.isinf(b[15]):
+        return gap  # what is without end reaches along all other directions
     for i in range(3, 12, 3):
         for j in range(3, 12, 3):
             u = a[i + 1] * b[j + 2] - a[i + 2] * b[j + 1]
             v = a[i + 2] * b[j] - a[i] * b[j + 2]
             w = a[i] * b[j + 1] - a[i + 1] * b[j]
-            length = math.sqrt(u * u + v * v + w * w)
-            if length > PARALLEL:
+            square = u * u + v * v + w * w
+            if square > PARALLEL:
                 room = abs(u * x + v * y + w * z)
                 for k in range(3):
                     f = 3 + 3 * k
                     room -= a[12 + k] * abs(u * a[f] + v * a[f + 1] + w * a[f + 2])
                     room -= b[12 + k] * abs(u * b[f] + v * b[f + 1] + w * b[f + 2])
-                if room > (reach + SLACK) * length:
+                if room > 0.0 and room * room > (reach + SLACK) * (reach + SLACK) * square:
                     return math.inf
     return gap
 
@@ -106,9 +110,9 @@ def near(
         margins: (p,) ... and their margins, m.
         standing: What stands, as above.
         asked: (m, s) which moving solids are asked about against which standing ones ...
-        margin: ... and their margin, m.
+        margin: ... and their margin, m; their paddings come on top.
         beyond: m.
-        placed: (m, 16) scratch.
+        placed: (m, 17) scratch.
         found: (k, 3) receives the pairs, what stands numbered from m on, and their row in ``pairs`` or -1; the pair
             first whose boxes overlap most, as it is the likeliest to collide.
         least: (k,) receives a distance that the two are at least apart, m.
@@ -123,7 +127,7 @@ def near(
     for j in range(standing.shape[0]):
         for i in range(m):
             if asked[i, j]:
-                gap = parted(placed[i], standing[j], margin + beyond)
+                gap = parted(placed[i], standing[j], margin + placed[i, 16] + standing[j, 16] + beyond)
                 if gap < math.inf:
                     if count < room:
                         found[count, 0], found[count, 1], found[count, 2], least[count] = i, m + j, -1, gap

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from pin_metaik.cache_folder import cache_folder
 
-VERSION = b"5"  # of what is kept: a new one when the way to work it out changes
+VERSION = b"6"  # of what is kept: a new one when the way to work it out changes
 Arrays = dict[str, NDArray[np.float64]]
 
 

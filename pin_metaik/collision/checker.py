@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from pin_metaik.collision.body import Body
 from pin_metaik.collision.contact import Contact, Distance, Near
 from pin_metaik.collision.narrow import TOUCH
+from pin_metaik.collision.padding import Padding
 from pin_metaik.collision.solids import Level, Pairs, Placed, Solids
 
 ENCLOSED = 1e-6  # m added to the margin of coarse solids: what coal's distances may be off by
@@ -31,6 +32,7 @@ class Checker:
     Attributes:
         solids: All bodies; those that move are numbered first.
         asked: The pairs; those of bodies that move stand in the order of how often they collide.
+        padding: How far bodies are kept from what stands.
         direct: For each pair of bodies that move, whether its coarse solids decide nothing and are left out.
         fixed: Contacts of what cannot move: then every configuration collides.
         exact: Whether the original geometry is asked.
@@ -38,6 +40,7 @@ class Checker:
 
     solids: Solids
     asked: Pairs
+    padding: Padding
     direct: tuple[bool, ...]
     fixed: tuple[Contact, ...]
     exact: bool
@@ -59,7 +62,10 @@ class Checker:
         if self.fixed:
             return True
         placed = self.solids.place(q)
-        return any(self._collide(placed, i, j, own) for i, j, own in placed.near(self.asked))
+        for i, j, own in placed.near(self.asked):  # noqa: SIM110  # a generator takes a tenth of a check
+            if self._collide(placed, i, j, own):
+                return True
+        return False
 
     def contacts(self, q: NDArray[np.float64]) -> tuple[Contact, ...]:
         """What collides at q (nq,), the deepest first; two bodies count once."""
@@ -83,7 +89,7 @@ class Checker:
             carriers = self._joint(i), self._joint(j)
             wanted = joints is None or all(joint in joints for joint in carriers)
             if wanted and self._collide(placed, i, j, own):
-                depth = max(0.0, self._margins[own] - self._hulls(placed, i, j).distance)
+                depth = max(0.0, self._margin(i, j, own) - self._hulls(placed, i, j).distance)
                 found.append((Contact(self._name(i), self._name(j), depth), carriers))
         return found
 
@@ -96,7 +102,7 @@ class Checker:
             near = placed.near(self._bare, min(reach, best.distance))
             new = [(i, j, own) for i, j, own in near if (i, j) not in done]
             done.update((i, j) for i, j, _ in new)
-            coarse = [(placed.gap(*self._first(*pair)), pair) for pair in new]
+            coarse = [(placed.gap(*self._levels(*pair)[:2]), pair) for pair in new]
             for gap, pair in sorted(coarse):
                 if gap > TOUCH and gap >= best.distance:
                     break  # coarse solids enclose: nothing beyond can be nearer
@@ -110,11 +116,11 @@ class Checker:
         placed = self.solids.place(q)
         total = 0.0
         for i, j, own in placed.near(self.asked):
-            a, b = self._first(i, j, own)
+            a, b, *_ = self._levels(i, j, own)
             gap = placed.gap(a, b)
             if gap <= 0.0 and (a.mesh or b.mesh):
                 gap = self._hulls(placed, i, j).distance
-            total += max(0.0, self._margins[own] - gap)
+            total += max(0.0, self._margin(i, j, own) - gap)
         return total
 
     def near(self, q: NDArray[np.float64]) -> list[Near]:
@@ -122,7 +128,7 @@ class Checker:
         placed = self.solids.place(q)
         found = []
         for i, j, own in placed.near(self.asked, NEAR):
-            room = placed.distance(*self._first(i, j, own)) - self._margins[own]
+            room = placed.distance(*self._levels(i, j, own)[:2]) - self._margin(i, j, own)
             normal = placed.normal
             if room <= NEAR and 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none
                 found.append(Near(room, normal, placed.points, (self._joint(i), self._joint(j))))
@@ -133,10 +139,17 @@ class Checker:
         """The pairs without their margins."""
         return replace(self.asked, margins=np.zeros(len(self.asked.margins)), margin=0.0)
 
+    def _margin(self, i: int, j: int, own: int) -> float:
+        """The distance at or below which a pair collides, m."""
+        if own >= 0:
+            return self._margins[own]
+        return self.padding.of(self._name(i), self._name(j)) if self.padding.by else self.padding.margin
+
     @cached_property
     def _margins(self) -> list[float]:
-        """The margins of the pairs that move, and last that of all others: row -1, m."""
-        return [*self.asked.margins.tolist(), self.asked.margin]
+        """The margins of the pairs that move, m."""
+        margins: list[float] = self.asked.margins.tolist()
+        return margins
 
     def _joint(self, number: int) -> int:
         moving = self.solids.moving
@@ -146,31 +159,25 @@ class Checker:
         moving = self.solids.moving
         return (moving[number] if number < len(moving) else self.solids.standing[number - len(moving)]).link
 
-    def _first(self, i: int, j: int, own: int) -> tuple[Level, Level]:
-        """The levels of two bodies that are asked first."""
+    def _levels(self, i: int, j: int, own: int) -> tuple[Level, Level, Level, Level]:
+        """The levels of two bodies that are asked first, and those that have the last word."""
         a, b = self.solids.levels[i], self.solids.levels[j]
+        c, d = a.last[b.flat], b.last[a.flat]
         if own >= 0 and self.direct[own]:
-            return a.facing(b), b.facing(a)
-        return a.first(b), b.first(a)
-
-    def _last(self, i: int, j: int) -> tuple[Level, Level]:
-        """The levels of two bodies that have the last word."""
-        a, b = self.solids.levels[i], self.solids.levels[j]
-        return a.facing(b), b.facing(a)
+            return c, d, c, d
+        return a.first[b.flat], b.first[a.flat], c, d
 
     def _collide(self, placed: Placed, i: int, j: int, own: int) -> bool:
-        first = self._first(i, j, own)
-        margin = self._margins[own]
-        if not self.exact:
-            return placed.overlap(*first, margin)
-        last = self._last(i, j)
-        if first[0].geometry is last[0].geometry and first[1].geometry is last[1].geometry:
-            return placed.overlap(*last, margin)
-        return placed.overlap(*first, margin + ENCLOSED) and placed.overlap(*last, margin)
+        margin = self._margin(i, j, own)
+        a, b, c, d = self._levels(i, j, own)
+        if not self.exact or (a is c and b is d):
+            return placed.overlap(a, b, margin)
+        return placed.overlap(a, b, margin + ENCLOSED) and placed.overlap(c, d, margin)
 
     def _nearer(self, placed: Placed, i: int, j: int, own: int, best: Distance) -> Distance:
         """The distance of two bodies where it is less than the best, else that."""
-        last = self._last(i, j) if self.exact else self._first(i, j, own)
+        levels = self._levels(i, j, own)
+        last = levels[2:] if self.exact else levels[:2]
         gap = placed.gap(*last)
         if gap > TOUCH and gap >= best.distance:
             return best

@@ -44,13 +44,12 @@ class Sampled(NamedTuple):
 Samples: TypeAlias = Mapping[tuple[Body, Body], Sampled]
 
 
-def sample(solids: Solids, disabled: Mapping[Pair, str], margin: float, known: Samples) -> Samples:
+def sample(solids: Solids, disabled: Mapping[Pair, str], known: Samples) -> Samples:
     """What samples say of the pairs of bodies that move against each other and are not disabled.
 
     Args:
         solids: The bodies.
         disabled: Names of the pairs of bodies that may touch.
-        margin: Distance at or below which bodies collide, m.
         known: What is known already, of these or other pairs.
     """
     bodies = solids.moving
@@ -62,18 +61,17 @@ def sample(solids: Solids, disabled: Mapping[Pair, str], margin: float, known: S
     ]
     new = [pair for pair in pairs if pair not in known]
     if new:
-        known = {**known, **dict(zip(new, _sample(solids, new, margin), strict=True))}
+        known = {**known, **dict(zip(new, _sample(solids, new), strict=True))}
     return {pair: known[pair] for pair in pairs}
 
 
-def lay_out(solids: Solids, samples: Samples, disabled: Mapping[Pair, str], margin: float, exact: bool) -> Checker:
+def lay_out(solids: Solids, samples: Samples, disabled: Mapping[Pair, str], exact: bool) -> Checker:
     """The checks of the sampled pairs, and of all that moves against all that stands.
 
     Args:
         solids: The bodies.
         samples: The pairs of bodies that move against each other, and what samples say of them.
         disabled: Names of the pairs of bodies that may touch.
-        margin: Distance at or below which bodies collide, m.
         exact: Whether the original geometry has the last word.
     """
     number = {body: k for k, body in enumerate(solids.moving)}
@@ -86,7 +84,8 @@ def lay_out(solids: Solids, samples: Samples, disabled: Mapping[Pair, str], marg
     held = np.array([body.part for body in solids.moving], dtype=bool) & ~moves
     return Checker(
         solids,
-        Pairs(own, margins, against, margin),
+        Pairs(own, margins, against, solids.padding.margin),
+        solids.padding,
         tuple(sampled.direct for _, sampled in ordered),
         _fixed(solids, np.ascontiguousarray(may & held[:, None])),
         exact,
@@ -108,27 +107,30 @@ def _may_meet(solids: Solids, disabled: Mapping[Pair, str]) -> NDArray[np.bool_]
 
 
 def _fixed(solids: Solids, against: NDArray[np.bool_]) -> tuple[Contact, ...]:
-    """Overlaps of the robot's base with what stands in the world; they need no margin, as neither can come nearer.
+    """Overlaps of the robot's base with what stands in the world.
 
-    A base that stands on something touches it, and does not overlap.
+    They need no margin, as neither can come nearer, unless it was asked for the pair by name. A base that stands on
+    something touches it, and does not overlap.
     """
-    asked = Pairs(np.empty((0, 2), dtype=np.int64), np.empty(0), against, 0.0)
-    found = Checker(solids, asked, (), (), exact=True).contacts(pin.neutral(solids.model))
+    asked = Pairs(np.empty((0, 2), dtype=np.int64), np.empty(0), against, solids.padding.margin)
+    found = Checker(solids, asked, solids.padding.pairs, (), (), exact=True).contacts(pin.neutral(solids.model))
     return tuple(contact for contact in found if contact.depth > RESTS)
 
 
-def _sample(solids: Solids, pairs: Sequence[tuple[Body, Body]], margin: float) -> list[Sampled]:
+def _sample(solids: Solids, pairs: Sequence[tuple[Body, Body]]) -> list[Sampled]:
     number = {body: k for k, body in enumerate(solids.moving)}
     own = np.array([(number[a], number[b]) for a, b in pairs], dtype=np.int64)
     levels = [(solids.levels[i], solids.levels[j]) for i, j in own.tolist()]
     Q = random_configurations(solids.model, np.random.default_rng(SEED), SAMPLES)
-    margins = np.full(len(pairs), margin)
-    if margin > 0.0:
+    padding = solids.padding
+    margins = np.array([padding.of(a.link, b.link) for a, b in pairs])
+    built = [a.part and b.part and not padding.names(a.link, b.link) for a, b in pairs]
+    if margins.any():
         near = _shares(solids, own, margins, [(a.hull, b.hull) for a, b in levels], Q) >= MOSTLY
-        margins[near & [a.part and b.part for a, b in pairs]] = 0.0
-    coarse = _shares(solids, own, margins, [(a.first(b), b.first(a)) for a, b in levels], Q)
+        margins[near & built] = 0.0
+    coarse = _shares(solids, own, margins, [(a.first[b.flat], b.first[a.flat]) for a, b in levels], Q)
     often = np.flatnonzero(coarse >= MOSTLY)
-    fine = [(a.facing(b), b.facing(a)) for a, b in levels]
+    fine = [(a.last[b.flat], b.last[a.flat]) for a, b in levels]
     vain = np.zeros(len(pairs))
     vain[often] = coarse[often] - _shares(solids, own[often], margins[often], [fine[k] for k in often], Q)
     rows = zip(margins.tolist(), coarse.tolist(), (vain >= MOSTLY).tolist(), strict=True)

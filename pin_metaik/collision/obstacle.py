@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import cast
@@ -10,7 +11,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from pin_metaik.collision.numbers import three
+from pin_metaik.collision.numbers import real, three
 from pin_metaik.collision.shapes import Shape
 from pin_metaik.errors import InvalidGeometry, InvalidTarget
 from pin_metaik.kinematics.pose import as_pose
@@ -26,16 +27,20 @@ class Obstacle:
         shape: Its shape.
         pose: Where it stands: ``pin.SE3``, (4, 4), or a position (3,); kept as ``pin.SE3``. Default: the origin.
         touching: Names of links and obstacles that may touch it.
+        padding: What is added to the world's margin, m: one distance for all pairs of it, or one for each name of a
+            link or obstacle. By name it stands instead of what the padding of the two would add.
 
     Raises:
-        InvalidGeometry: If the name is empty, the shape is none, the pose is not finite and orthonormal, or what may
-            touch it is not a list of names.
+        InvalidGeometry: If the name is empty, the shape is none, the pose is not finite and orthonormal, what may
+            touch it is not a list of names, the padding is not made of distances of at least 0 m, or keeps away what
+            may touch it.
     """
 
     name: str
     shape: Shape
     pose: pin.SE3 = (0.0, 0.0, 0.0)
     touching: tuple[str, ...] = ()
+    padding: float | Mapping[str, float] = 0.0
 
     def __post_init__(self) -> None:
         """Check everything once, where it enters."""
@@ -50,6 +55,9 @@ class Obstacle:
             raise InvalidGeometry(f"the shape of {self.name!r} is a Box, Sphere, ... or Mesh, got {self.shape!r}")
         object.__setattr__(self, "pose", placement(self.name, self.pose))
         object.__setattr__(self, "touching", _names(self.name, self.touching))
+        object.__setattr__(self, "padding", _padding(self.name, self.padding))
+        if isinstance(self.padding, Mapping) and (both := set(self.padding).intersection(self.touching)):
+            raise InvalidGeometry(f"{min(both)!r} may touch {self.name!r}, and is kept away from it by a padding")
 
 
 def _names(name: str, touching: Iterable[str]) -> tuple[str, ...]:
@@ -60,6 +68,20 @@ def _names(name: str, touching: Iterable[str]) -> tuple[str, ...]:
     if not all(isinstance(one, str) for one in names):
         raise InvalidGeometry(f"what may touch {name!r} is a list of names, got {touching!r}")
     return cast(tuple[str, ...], names)
+
+
+def _padding(name: str, padding: object) -> float | dict[str, float]:
+    if isinstance(padding, Mapping):
+        distances = {other: real(distance) for other, distance in padding.items()}
+        if name not in distances and all(
+            isinstance(other, str) and 0.0 <= distances[other] < math.inf for other in distances
+        ):
+            return distances
+    elif 0.0 <= real(padding) < math.inf:
+        return real(padding)
+    raise InvalidGeometry(
+        f"the padding of {name!r} is a finite distance of at least 0 m, or one for each of other names, got {padding!r}"
+    )
 
 
 def placement(name: str, pose: pin.SE3 | ArrayLike) -> pin.SE3:

@@ -8,22 +8,23 @@ from typing import TypeAlias
 import pinocchio as pin
 
 from pin_metaik.collision.body import Body, Geometry
+from pin_metaik.collision.padding import Padding
 from pin_metaik.collision.srdf import Pair, pair_of, read_srdf
 from pin_metaik.collision.touch import touches
 
 Srdf: TypeAlias = str | Path | bool | None
 
-CLEAR = 0.01  # m beyond the margin that links must always keep before they need not be checked
+CLEAR = 0.01  # m beyond what is asked that links must always keep before they need not be checked
 
 
-def disabled_pairs(robot: Geometry, bodies: tuple[Body, ...], srdf: Srdf, margin: float) -> dict[Pair, str]:
+def disabled_pairs(robot: Geometry, bodies: tuple[Body, ...], srdf: Srdf, padding: Padding) -> dict[Pair, str]:
     """The pairs that are not checked, with the reason: what an SRDF says, else Adjacent, Always or Never.
 
     Args:
         robot: The robot.
         bodies: Its geometry.
         srdf: A file; None for the robot's own, if it has one; False for none.
-        margin: What distance collides, m.
+        padding: What distances collide.
 
     Raises:
         InvalidModel: If the SRDF cannot be read.
@@ -37,7 +38,7 @@ def disabled_pairs(robot: Geometry, bodies: tuple[Body, ...], srdf: Srdf, margin
     for pair, touch in touches(robot.model, bodies).items():
         if touch.always:
             disabled.setdefault(pair, "Always")
-        elif touch.gap > margin + CLEAR:
+        elif touch.gap > padding.of(*pair) + CLEAR:
             disabled.setdefault(pair, "Never")
     return disabled
 

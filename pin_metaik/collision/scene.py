@@ -82,7 +82,7 @@ KINDS: dict[str, Kind] = {
     "height_field": _sizes(HeightField),
     "mesh": Kind(lambda file, scale=1.0: Mesh.read(file, scale), ("file",), ("file", "scale")),
 }
-KEYS = ("name", "shape", "position", "rpy", "touching")
+KEYS = ("name", "shape", "position", "rpy", "touching", "padding")
 
 
 def scene_names() -> list[str]:
@@ -94,7 +94,8 @@ def load_scene(source: str | Path) -> tuple[Obstacle, ...]:
     """The obstacles of a scene, by its name or from a TOML or JSON file.
 
     Each ``[[obstacle]]`` has a ``name``, a ``shape`` with its sizes in m, a ``position`` in m, perhaps ``rpy`` in rad
-    (Rz(yaw) Ry(pitch) Rx(roll)) and ``touching``, names that may touch it. A mesh has a ``file``, relative to the
+    (Rz(yaw) Ry(pitch) Rx(roll)), ``touching``, names that may touch it, and ``padding``, a distance in m that is added
+    to the margin, or a table of one for each of some names. A mesh has a ``file``, relative to the
     scene's, and perhaps a ``scale``; a ``point_cloud`` has ``points`` or a .npy ``file``, and a ``radius``; an
     ``octree`` the same with a ``resolution``; a ``height_field`` ``size``, ``heights`` and ``base``.
 
@@ -175,7 +176,7 @@ def _obstacle(entry: Mapping[str, Any], where: str, folder: Path) -> Obstacle:
         values["file"] = folder / values["file"]
     pose = pin.SE3(rpy_matrix(*_three(entry, "rpy", where)), _three(entry, "position", where))
     try:
-        return Obstacle(entry["name"], kind.make(**values), pose, entry.get("touching", ()))
+        return Obstacle(entry["name"], kind.make(**values), pose, entry.get("touching", ()), entry.get("padding", 0.0))
     except InvalidGeometry as error:
         raise InvalidGeometry(f"{where}: {error}") from None
 

@@ -6,6 +6,7 @@ a check nothing until something comes near.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -22,6 +23,7 @@ from pin_metaik.collision.body import Body
 from pin_metaik.collision.extent import centre, is_flat
 from pin_metaik.collision.interior import Interior
 from pin_metaik.collision.narrow import apart, touching
+from pin_metaik.collision.padding import Padding
 from pin_metaik.collision.simplify import Solid
 
 ROOM = 256  # pairs that scratch has room for at first
@@ -47,10 +49,15 @@ class Levels(NamedTuple):
     """The levels of detail of a body, each inside the one before: coarse, hull and fine.
 
     Attributes:
+        first: The level that is asked first, against a body with thickness and against one that is flat.
+        last: The level that has the last word, against the same two.
+        hull: Its hull.
+        fine: The geometry as it is.
         flat: Whether it is a half-space or a plane, which meets a mesh exactly where it meets its hull.
     """
 
-    coarse: Level
+    first: tuple[Level, Level]
+    last: tuple[Level, Level]
     hull: Level
     fine: Level
     flat: bool
@@ -59,19 +66,15 @@ class Levels(NamedTuple):
     def of(body: Body, pose: int, coarse_pose: int) -> Levels:
         """The levels of a body; ``pose`` is the row of its original's pose, ``coarse_pose`` that of the first level."""
         solid = body.solid
-        coarse, hull, fine = (
-            Level(geometry, at, centre(geometry), solid if isinstance(geometry, coal.BVHModelBase) else None)
-            for geometry, at in ((solid.coarse, coarse_pose), (solid.hull, pose), (solid.original, pose))
-        )
-        return Levels(coarse, hull, fine, is_flat(solid.original))
+        fine = _level(solid, solid.original, pose)
+        hull = fine if solid.hull is solid.original else _level(solid, solid.hull, pose)
+        known = {id(solid.original): fine, id(solid.hull): hull}
+        coarse = known.get(id(solid.coarse)) or _level(solid, solid.coarse, coarse_pose)
+        return Levels((coarse, hull), (fine, hull), hull, fine, is_flat(solid.original))
 
-    def facing(self, other: Levels) -> Level:
-        """The level that has the last word against another body."""
-        return self.hull if other.flat else self.fine
 
-    def first(self, other: Levels) -> Level:
-        """The level that is asked first; the last as well where nothing is simpler."""
-        return self.facing(other) if self.coarse.geometry is self.fine.geometry else self.coarse
+def _level(solid: Solid, geometry: Any, pose: int) -> Level:
+    return Level(geometry, pose, centre(geometry), solid if isinstance(geometry, coal.BVHModelBase) else None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +85,7 @@ class Pairs:
         own: (p, 2) pairs of bodies that move.
         margins: (p,) the distance of each at or below which it collides, m.
         against: (m, s) which bodies that move are asked about against which that stand.
-        margin: The distance of these at or below which they collide, m.
+        margin: The distance of these at or below which they collide, m; their paddings come on top.
     """
 
     own: NDArray[np.int64]
@@ -99,11 +102,13 @@ class Solids:
         model: The robot's model.
         moving: Bodies that joints carry, with what Pinocchio's world joint carries of the robot.
         standing: Bodies that stand in the world.
+        padding: How far apart they are kept.
     """
 
     model: pin.Model
     moving: tuple[Body, ...]
     standing: tuple[Body, ...] = ()
+    padding: Padding = field(default_factory=Padding)
     _local: local = field(init=False, default_factory=local, repr=False)
 
     @cached_property
@@ -132,13 +137,18 @@ class Solids:
 
     @cached_property
     def boxes(self) -> NDArray[np.float64]:
-        """(m, 7) the boxes of what moves, in its frames, as ``boxes.near`` takes them."""
-        return np.array([body.solid.box for body in self.moving]).reshape(-1, 7)
+        """(m, 8) the boxes of what moves, in its frames, as ``boxes.near`` takes them."""
+        boxes = np.array([body.solid.box for body in self.moving]).reshape(-1, 7)
+        return np.column_stack([boxes, self._paddings(self.moving)])
 
     @cached_property
     def stood(self) -> NDArray[np.float64]:
-        """(s, 16) the boxes of what stands, in the world, as ``boxes.near`` takes them."""
-        return np.array([body.stood for body in self.standing]).reshape(-1, 16)
+        """(s, 17) the boxes of what stands, in the world, as ``boxes.near`` takes them."""
+        boxes = np.array([body.stood for body in self.standing]).reshape(-1, 16)
+        return np.column_stack([boxes, self._paddings(self.standing)])
+
+    def _paddings(self, bodies: tuple[Body, ...]) -> list[float]:
+        return [self.padding.most(body.link) for body in bodies]
 
     @cached_property
     def _shifted(self) -> dict[int, int]:
@@ -148,9 +158,8 @@ class Solids:
 
     def place(self, q: NDArray[np.float64]) -> Placed:
         """The bodies where they are at q (nq,); until this thread places them somewhere else."""
-        try:
-            placed: Placed = self._local.placed
-        except AttributeError:
+        placed: Placed | None = getattr(self._local, "placed", None)
+        if placed is None:
             placed = self._local.placed = Placed(self)
         placed.move(q)
         return placed
@@ -172,7 +181,7 @@ class Placed:
         self._at = [coal.Transform3s() for _ in self.poses] + [body.at for body in solids.standing]
         self._fresh: set[int] = set()
         self._collision, self._distance = coal.CollisionResult(), coal.DistanceResult()
-        self._boxes = np.empty((len(solids.moving), 16))
+        self._boxes = np.empty((len(solids.moving), 17))
         self._found, self._least = np.empty((ROOM, 3), dtype=np.int64), np.empty(ROOM)
         self._near = cast(Any, near).compiled()  # a frame less
 
@@ -195,16 +204,21 @@ class Placed:
             Numbers of both bodies, and the pair's row in ``pairs.own`` or -1; the likeliest to collide first.
         """
         solids = self.solids
-        scratch = self._boxes, self._found, self._least
-        margins, stood = pairs.margins, solids.stood
-        count = self._near(
-            self.poses, solids.boxes, pairs.own, margins, stood, pairs.against, pairs.margin, beyond, *scratch
-        )
+        own, margins, stood = pairs.own, pairs.margins, solids.stood
+        asked = pairs.against, pairs.margin, beyond
+        count = self._near(self.poses, solids.boxes, own, margins, stood, *asked, self._boxes, self._found, self._least)
         if count > len(self._found):
             self._found, self._least = np.empty((2 * count, 3), dtype=np.int64), np.empty(2 * count)
             return self.near(pairs, beyond)
-        found: list[list[int]] = self._found[:count].tolist()
+        found: list[list[int]] = self._found[:count].tolist() if count else []
         return found
+
+    def bounds(self, pairs: Pairs) -> NDArray[np.float64]:
+        """Distances (p,) that the pairs that move are at least apart by their boxes, m; below 0 where these overlap."""
+        rows = [row for _, _, row in self.near(pairs, math.inf)]
+        bounds = np.empty(len(rows))
+        bounds[rows] = self._least[: len(rows)]
+        return bounds
 
     def overlap(self, a: Level, b: Level, margin: float) -> bool:
         """Whether two bodies are no farther apart than a margin (m), or one lies inside the other."""

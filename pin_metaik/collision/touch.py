@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pin_metaik.collision.approach import Approach
 from pin_metaik.collision.body import Body, digest
 from pin_metaik.collision.cache import Arrays, kept, where_kept
-from pin_metaik.collision.solids import Level, Placed, Solids
+from pin_metaik.collision.solids import Level, Pairs, Solids
 from pin_metaik.collision.srdf import Pair, pair_of
 from pin_metaik.notice import notice
 
@@ -83,29 +83,30 @@ def _sample(
     solids = Solids(model, bodies)
     levels = [(solids.levels[i], solids.levels[j]) for i, j in pieces]
     hulls, originals = [(a.hull, b.hull) for a, b in levels], [(a.fine, b.fine) for a, b in levels]
-    data = model.createData()
-    approaches = [Approach(model, data, bodies[i], bodies[j]) for i, j in pieces]
-    distances, by_link = np.empty((SAMPLES, len(pieces))), np.full((SAMPLES, count), np.inf)
+    approaches = [Approach(solids, i, j) for i, j in pieces]
+    distances, by_link = np.full((SAMPLES, len(pieces)), np.inf), np.full((SAMPLES, count), np.inf)
+    nearest = np.full((STARTS, len(pieces)), np.inf)  # distances of each pair: no start is farther away
+    apart = np.zeros((len(bodies), 0), dtype=bool)
+    asked = Pairs(np.array(pieces, dtype=np.int64).reshape(-1, 2), np.zeros(len(pieces)), apart, 0.0)
     work = f"looking for links of {model.name} that can touch, once; {where_kept()}"
     with notice(work, SAMPLES + len(pieces)) as line:
         for k, q in enumerate(Q):
-            distances[k] = _distances(solids.place(q), hulls)
+            placed = solids.place(q)
+            near = np.flatnonzero(placed.bounds(asked) <= np.maximum(nearest[-1], CONTACT))
+            distances[k, near] = [placed.distance(*hulls[pair]) for pair in near]
+            nearest = np.sort(np.concatenate([nearest, distances[None, k]]), axis=0)[:STARTS]
             line.step()
         np.minimum.at(by_link.T, owner, distances.T)
         share, gap = (by_link <= CONTACT).mean(axis=0), np.maximum(by_link.min(axis=0), 0.0)
         for k, approach in enumerate(approaches):
             if gap[owner[k]] > 0.0:  # no other piece of the two links touches
-                nearest = _nearest(approach, Q[np.argsort(distances[:, k])[:STARTS]], rng)
-                gap[owner[k]] = min(gap[owner[k]], nearest)
+                least = _nearest(approach, Q[np.argsort(distances[:, k])[:STARTS]], rng)
+                gap[owner[k]] = min(gap[owner[k]], least)
             line.step()
     meshes = np.zeros(count)
     for link in np.flatnonzero(share >= ALWAYS):
         meshes[link] = _share(solids, [originals[k] for k in np.flatnonzero(owner == link)], Q[:ENOUGH])
     return {"share": share, "meshes": meshes, "gap": gap}
-
-
-def _distances(placed: Placed, pairs: Sequence[tuple[Level, Level]]) -> list[float]:
-    return [placed.distance(a, b) for a, b in pairs]
 
 
 def _share(solids: Solids, pieces: Sequence[tuple[Level, Level]], Q: NDArray[np.float64]) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import get_args
@@ -13,11 +13,13 @@ import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.collision.batch import Ask, answers
 from pin_metaik.collision.body import Body, Geometry, geometry_of, robot_bodies
 from pin_metaik.collision.checker import Checker
 from pin_metaik.collision.contact import Contact, Distance
 from pin_metaik.collision.layout import Samples, lay_out, sample
 from pin_metaik.collision.obstacle import Obstacle, placement
+from pin_metaik.collision.padding import Key, Padding, check_padding, entries, names_of, read_padding
 from pin_metaik.collision.pairs import Srdf, disabled_pairs
 from pin_metaik.collision.shapes import Shape
 from pin_metaik.collision.simplify import Simplify, solid_of
@@ -25,6 +27,7 @@ from pin_metaik.collision.solids import Solids
 from pin_metaik.collision.srdf import Pair, pair_of, write_srdf
 from pin_metaik.errors import InvalidConfiguration, InvalidGeometry, InvalidSetting, UnknownName
 from pin_metaik.kinematics.model import as_configuration, frame_id
+from pin_metaik.optimize.settings import whole
 from pin_metaik.output import writable
 
 
@@ -44,6 +47,7 @@ class CollisionWorld:
         robot: The robot.
         model: Its model, which configurations are of.
         margin: Distance at or below which two bodies collide, m.
+        padding: What is added to it, m, by name or pair of names.
         simplify: What is checked first.
         exact: Whether the original geometry confirms what the simplified one finds.
         obstacles: What stands in the world.
@@ -60,6 +64,8 @@ class CollisionWorld:
         *,
         simplify: Simplify = "convex",
         exact: bool = True,
+        padding: Mapping[Key, float] | None = None,
+        visual: bool = True,
     ) -> None:
         """Load the robot's geometry, find out which links ever touch, and put up the obstacles.
 
@@ -70,18 +76,24 @@ class CollisionWorld:
             margin: Distance at or below which two bodies collide, m. It is not kept between: links that mostly are
                 nearer to each other, as they are built so (they must only not touch); pairs that ``disabled`` names,
                 which are not checked at all; and the robot's base and what stands, as neither can come nearer (they
-                must only not overlap).
+                must only not overlap). A padding of the pair itself is kept in the first and the last case, too.
             srdf: A file with the pairs of links not to check; default: the robot's own, if it has one; ``False``: none.
                 Neighbours, links that always touch and links that never do are found out either way.
             simplify: ``"convex"`` hulls or ``"capsule"``s are checked before the original geometry, or ``"none"``.
             exact: Ask the original geometry where simplified solids touch. Without it they decide, which is a little
                 quicker, and calls some configurations collisions that are none.
+            padding: What is added to the margin, m: by the name of a link or obstacle, in all pairs of it, so that the
+                paddings of two add up; by two names, in that pair, instead of theirs. Such as
+                ``{"panda_hand": 0.02, ("panda_hand", "table"): 0.05}``. It goes before what obstacles bring.
+            visual: Check what a robot without collision geometry looks like, with a warning; otherwise refuse it.
 
         Raises:
             InvalidGeometry: If the robot has no geometry, or two obstacles have one name.
             InvalidModel: If a mesh of the robot or the SRDF cannot be read.
-            InvalidSetting: If the margin is negative or not finite.
-            UnknownName: If the SRDF or an obstacle names something that does not exist, or ``simplify`` is no level.
+            InvalidSetting: If the margin or a padding is negative or not finite, or a padding is of a pair that is not
+                checked; the message says why it is not.
+            UnknownName: If the SRDF, a padding or an obstacle names something that does not exist, or ``simplify`` is
+                no level.
         """
         robot = geometry_of(robot)
         if not 0.0 <= margin < math.inf:
@@ -90,18 +102,22 @@ class CollisionWorld:
             raise UnknownName("simplification", str(simplify), get_args(Simplify))
         self.robot, self.model, self.margin = robot, robot.model, float(margin)
         self.simplify, self.exact = simplify, exact
-        self._links = robot_bodies(robot, simplify)
-        self.disabled = disabled_pairs(robot, self._links, srdf, self.margin)
+        self._links = robot_bodies(robot, simplify, visual)
+        self.padding = read_padding(padding or {})
+        self.disabled = disabled_pairs(robot, self._links, srdf, Padding(self.margin, self.padding))
         self.obstacles: tuple[Obstacle, ...] = ()
         self.grasped: tuple[tuple[Obstacle, str], ...] = ()
         self._others: dict[str, Body] = {}
         self._samples: Samples = {}
         self._checker: Checker | None = None
-        for obstacle in obstacles:
-            self._enter(obstacle, 0, obstacle.pose)
-            self.obstacles = (*self.obstacles, obstacle)
-        for obstacle in self.obstacles:
-            self._permit(obstacle.name, obstacle.touching)
+        given = tuple(obstacles)
+        self._take_in([(obstacle, 0, obstacle.pose) for obstacle in given])
+        self.obstacles = given
+        check_padding(self.padding, self.disabled)
+        for key in self.padding:
+            for name in names_of(key):
+                if name not in self.names:
+                    raise UnknownName("body", name, self.names)
 
     def __getstate__(self) -> dict[str, object]:
         """Pickle without the checks, which hold scratch of this process: they are laid out again."""
@@ -125,11 +141,10 @@ class CollisionWorld:
 
         Raises:
             InvalidGeometry: If its name is taken.
-            UnknownName: If it may touch something that does not exist.
+            UnknownName: If it may touch, or is kept away from, something that does not exist.
         """
-        self._enter(obstacle, 0, obstacle.pose)
+        self._take_in([(obstacle, 0, obstacle.pose)])
         self.obstacles = (*self.obstacles, obstacle)
-        self._permit(obstacle.name, obstacle.touching)
 
     @checked
     def move(self, name: str, pose: pin.SE3 | ArrayLike) -> None:
@@ -160,6 +175,7 @@ class CollisionWorld:
         self.obstacles = tuple(o for o in self.obstacles if o.name != name)
         self.grasped = tuple((o, frame) for o, frame in self.grasped if o.name != name)
         self.disabled = {pair: reason for pair, reason in self.disabled.items() if name not in pair}
+        self.padding = {key: m for key, m in self.padding.items() if name not in names_of(key)}
         self._checker = None
 
     @checked
@@ -170,6 +186,7 @@ class CollisionWorld:
         frame: str,
         pose: pin.SE3 | ArrayLike = (0.0, 0.0, 0.0),
         touching: Iterable[str] | None = None,
+        padding: float | Mapping[str, float] = 0.0,
     ) -> None:
         """Grasp an object: from now on it moves with a frame, and must not collide either.
 
@@ -180,18 +197,21 @@ class CollisionWorld:
             pose: Where the object is in that frame.
             touching: Names of links and obstacles that may touch it; default: what moves on the frame's own link, such
                 as fingers. Links that are fixed to the frame may touch it in any case.
+            padding: What is added to the margin, m, for all pairs of it or by the name of the other.
 
         Raises:
             FrameNotFound: If the model has no such frame.
-            InvalidGeometry: If the name is taken, the shape is none or the pose is not finite and orthonormal.
-            UnknownName: If it may touch something that does not exist.
+            InvalidGeometry: If the name is taken, the shape is none, the pose is not finite and orthonormal, or the
+                padding no distance.
+            UnknownName: If it may touch, or is kept away from, something that does not exist.
         """
         holder = self.model.frames[frame_id(self.model, frame)]
         fingers = [b.link for b in self._links if b.joint and self.model.parents[b.joint] == holder.parentJoint]
-        held = Obstacle(name, shape, pose, tuple(fingers if touching is None else touching))
-        self._enter(held, int(holder.parentJoint), holder.placement * held.pose)
+        away = padding if isinstance(padding, Mapping) else {}
+        touching = (link for link in fingers if link not in away) if touching is None else touching
+        held = Obstacle(name, shape, pose, tuple(touching), padding)
+        self._take_in([(held, int(holder.parentJoint), holder.placement * held.pose)])
         self.grasped = (*self.grasped, (held, frame))
-        self._permit(name, held.touching)
 
     @checked
     def detach(self, name: str, q: ArrayLike) -> None:
@@ -244,9 +264,9 @@ class CollisionWorld:
             others = self._others.items()
             moving = (*self._links, *(body for name, body in others if name in held))
             standing = tuple(body for name, body in others if name not in held)
-            solids = Solids(self.model, moving, standing)
-            self._samples = sample(solids, self.disabled, self.margin, self._samples)
-            self._checker = lay_out(solids, self._samples, self.disabled, self.margin, self.exact)
+            solids = Solids(self.model, moving, standing, Padding(self.margin, self.padding))
+            self._samples = sample(solids, self.disabled, self._samples)
+            self._checker = lay_out(solids, self._samples, self.disabled, self.exact)
         return self._checker
 
     def in_collision(self, q: ArrayLike) -> bool:
@@ -273,36 +293,69 @@ class CollisionWorld:
         """
         return self.checker.nearest(as_configuration(self.model, q))
 
-    def in_collision_batch(self, Q: ArrayLike) -> NDArray[np.bool_]:
+    def in_collision_batch(self, Q: ArrayLike, *, workers: int | None = None) -> NDArray[np.bool_]:
         """Whether anything collides, (k,), at configurations Q (k, nq).
 
+        Processes help where they save time, from some 100,000 quick checks on two cores; a few thousand that take
+        milliseconds each are enough.
+
+        Args:
+            Q: Configurations.
+            workers: Processes; default: one a core where they are forked and this is the only thread, else none. The
+                answers do not depend on it. Where processes are not forked but begin from nothing, a script that asks
+                for them guards its own start by ``if __name__ == "__main__":``.
+
         Raises:
             InvalidConfiguration: If a row is not a configuration of the model.
+            InvalidSetting: If ``workers`` is less than one.
         """
-        return np.array([self.checker.collides(q) for q in self._given(Q)], dtype=bool)
+        return self._answers(_collides, Q, workers).astype(bool)
 
-    def min_distance_batch(self, Q: ArrayLike) -> NDArray[np.float64]:
+    def min_distance_batch(self, Q: ArrayLike, *, workers: int | None = None) -> NDArray[np.float64]:
         """Distance (k,) of the nearest two bodies at configurations Q (k, nq), m.
 
+        Args:
+            Q: Configurations.
+            workers: Processes, as for ``in_collision_batch``.
+
         Raises:
             InvalidConfiguration: If a row is not a configuration of the model.
+            InvalidSetting: If ``workers`` is less than one.
         """
-        return np.array([self.checker.nearest(q).distance for q in self._given(Q)], dtype=float)
+        return self._answers(_nearest, Q, workers)
 
-    def _given(self, Q: ArrayLike) -> NDArray[np.float64]:
-        """Configurations (k, nq) somebody gave."""
-        return array("Q", Q, "k", self.model.nq, error=InvalidConfiguration)
+    def _answers(self, ask: Ask, Q: ArrayLike, workers: int | None) -> NDArray[np.float64]:
+        if workers is not None:
+            whole("workers", workers, 1)
+        given = array("Q", Q, "k", self.model.nq, error=InvalidConfiguration)
+        self.checker  # noqa: B018  # laid out once, not in every process
+        return answers(self, ask, given, workers)
 
-    def _enter(self, obstacle: Obstacle, joint: int, at: pin.SE3) -> None:
-        if obstacle.name in self.names:
-            raise InvalidGeometry(f"there is a {obstacle.name!r} in the world already")
-        solid = solid_of(obstacle.shape.geometry(), self.simplify, robot=False)
-        self._others[obstacle.name] = Body(obstacle.name, joint, at, solid)
-        self._checker = None
-
-    def _permit(self, name: str, touching: Iterable[str]) -> None:
-        for other in touching:
-            self.allow(name, other, "Touching")
+    def _take_in(self, new: Sequence[tuple[Obstacle, int, pin.SE3]]) -> None:
+        """Take in obstacles, each with the joint that carries it and where it is there: all, or none of them."""
+        names = dict.fromkeys(self.names)
+        for obstacle, _, _ in new:
+            if obstacle.name in names:
+                raise InvalidGeometry(f"there is a {obstacle.name!r} in the world already")
+            names[obstacle.name] = None
+        disabled, padding = dict(self.disabled), dict[Key, float]()
+        for obstacle, _, _ in new:
+            away = obstacle.padding if isinstance(obstacle.padding, Mapping) else {}
+            for other in (*obstacle.touching, *away):
+                if other not in names:
+                    raise UnknownName("body", other, names)
+            disabled |= {pair_of(obstacle.name, other): "Touching" for other in obstacle.touching}
+            padding |= entries(obstacle.name, obstacle.padding)
+        check_padding(padding, disabled)
+        padding |= self.padding  # what was given to the world goes before what an obstacle brings
+        bodies = {
+            obstacle.name: Body(
+                obstacle.name, joint, at, solid_of(obstacle.shape.geometry(), self.simplify, robot=False)
+            )
+            for obstacle, joint, at in new
+        }
+        self._others |= bodies
+        self.disabled, self.padding, self._checker = disabled, padding, None
 
     def _pair(self, first: str, second: str) -> Pair:
         for name in (first, second):
@@ -313,3 +366,11 @@ class CollisionWorld:
     def __repr__(self) -> str:
         checked = sum(not reason for reason in self.pairs.values())
         return f"CollisionWorld({self.robot.name}: {len(self.obstacles)} obstacles, {checked} pairs checked)"
+
+
+def _collides(world: CollisionWorld, q: NDArray[np.float64]) -> float:
+    return world.checker.collides(q)
+
+
+def _nearest(world: CollisionWorld, q: NDArray[np.float64]) -> float:
+    return world.checker.nearest(q).distance

@@ -25,8 +25,8 @@ def as_configuration(model: pin.Model, q: ArrayLike) -> NDArray[np.float64]:
         InvalidConfiguration: If its length is not nq or an entry is not finite.
     """
     given: Any = q
-    if type(q) is np.ndarray and q.dtype.char == "d" and q.shape == (model.nq,) and math.isfinite(np.add.reduce(q)):
-        return given  # type: ignore[no-any-return]  # what worlds ask for thousands of times
+    if type(q) is np.ndarray and q.dtype.char == "d" and q.shape == (model.nq,) and math.isfinite(q.dot(q)):
+        return given  # type: ignore[no-any-return]  # what worlds ask for thousands of times; a dot product takes a third of a sum
     return array(f"a configuration of {model.name!r}", q, model.nq, error=InvalidConfiguration)
 
 

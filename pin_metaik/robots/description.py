@@ -15,7 +15,7 @@ from weakref import WeakKeyDictionary
 import pinocchio as pin
 
 from pin_metaik.arguments import checked, checked_as
-from pin_metaik.errors import InvalidModel
+from pin_metaik.errors import InvalidModel, UnknownName
 from pin_metaik.robots import plausible
 from pin_metaik.robots.couplings import NO_COUPLINGS, coupled, make_ready, read_couplings, with_own_names
 from pin_metaik.robots.prints import caught_prints, explain
@@ -87,7 +87,10 @@ class Description:
 
         Raises:
             InvalidModel: If a mesh is missing or unreadable, or a shape cannot be read; the message names it.
+            UnknownName: If there are no shapes of that name.
         """
+        if shapes not in KINDS:
+            raise UnknownName("kind of shapes", shapes, KINDS)
         geometry = self._mjcf_geometry(model, shapes) if self.is_mjcf else self._urdf_geometry(model, shapes)
         return geometry, plausible.meshes(geometry)
 
@@ -136,7 +139,9 @@ class Description:
     def _urdf_geometry(self, model: pin.Model, shapes: Shapes) -> pin.GeometryModel:
         tree = self.tree()
         if wrong := negative_sizes(tree, shapes):
-            raise InvalidModel(f"the {shapes} geometry of {self.what} has a size below zero: {'; '.join(wrong)}")
+            raise InvalidModel(
+                f"the {shapes} geometry of {self.what} has a size that is infinite or below zero: {'; '.join(wrong)}"
+            )
         shaped, counts = shapes_of(tree, shapes)
         text = ET.tostring(shaped, encoding="unicode")
         folders = [str(folder) for folder in (self.source or Path("here")).absolute().parents]

@@ -110,7 +110,7 @@ def _singles(element: ET.Element) -> Iterable[ET.Element]:
 
 
 def negative_sizes(robot: ET.Element, shapes: Shapes) -> list[str]:
-    """The shapes with a size below zero, each as ``link 'a': <sphere radius="-1">``."""
+    """The shapes with a size below zero, or infinite, each as ``link 'a': <sphere radius="-1">``."""
     return [
         f'link {link.get("name", "")!r}: <{shape.tag} {key}="{shape.get(key)}">'
         for link in robot.iterfind("link")

@@ -40,3 +40,21 @@ def test_worlds_that_make_no_sense_exit_with_two_and_no_traceback(words: tuple[s
     assert done.returncode == 2
     assert says in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_what_a_robot_looks_like_is_checked_unless_that_is_refused(tmp_path: Path) -> None:
+    robot = tmp_path / "seen.urdf"
+    box = '<visual><geometry><box size="0.8 0.1 0.1"/></geometry></visual>'
+    robot.write_text(
+        f'<robot name="seen"><link name="base">{box}</link><link name="arm">{box}</link>'
+        '<joint name="j" type="revolute">'
+        '<parent link="base"/><child link="arm"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/>'
+        '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>'
+    )
+    words = ("solve", str(robot), "--position", "1.0", "0.0", "0.0", "--world", "alone")
+    done = call(*words)
+    assert done.returncode == 0, done.stderr
+    assert "its visual geometry is checked" in done.stderr
+    done = call(*words, "--no-visual")
+    assert done.returncode == 2
+    assert "its visual geometry is not to be checked" in done.stderr

@@ -35,9 +35,15 @@ def test_a_mesh_of_a_robot_that_is_not_finite_is_refused_by_its_link(tmp_path: P
         mik.CollisionWorld(robot(tmp_path, BOX.format("1 1 1"), MESH.format("bad.obj")))
 
 
-def test_a_box_of_a_robot_with_sizes_below_0_is_refused_by_its_link(tmp_path: Path) -> None:
-    with pytest.raises(InvalidModel, match="has a size below zero: link 'b'"):
-        mik.CollisionWorld(robot(tmp_path, BOX.format("1 1 1"), BOX.format("1 -1 1")))
+@pytest.mark.parametrize("bad", ["-1", "nan", "inf", "-inf", "1e400"])
+def test_a_size_of_a_robot_that_is_none_is_refused_by_its_link(tmp_path: Path, bad: str) -> None:
+    ball, tube = '<sphere radius="{}"/>', '<cylinder radius="{}" length="1"/>'
+    for shape in (
+        BOX.format(f"1 {bad} 1"),
+        *(BOX.replace('<box size="{}"/>', one).format(bad) for one in (ball, tube)),
+    ):
+        with pytest.raises(InvalidModel, match="link 'b'"):
+            mik.CollisionWorld(robot(tmp_path, BOX.format("1 1 1"), shape))
 
 
 def test_a_flat_mesh_of_a_robot_is_a_sheet_that_collides(tmp_path: Path) -> None:
@@ -53,6 +59,13 @@ def test_a_robot_that_has_only_looks_is_checked_by_them_and_a_warning_says_so(tm
     with pytest.warns(VisualGeometry, match="two has no collision geometry: its visual geometry is checked"):
         world = mik.CollisionWorld(robot(tmp_path, seen, seen))
     assert world.names == ("a", "b", "c")
+
+
+def test_what_a_robot_looks_like_is_not_checked_where_that_is_not_wanted(tmp_path: Path) -> None:
+    seen = BOX.replace("collision", "visual").format("1 1 1")
+    with pytest.raises(InvalidGeometry, match="two has no collision geometry, and its visual geometry is not to be"):
+        mik.CollisionWorld(robot(tmp_path, seen, seen), visual=False)
+    assert mik.CollisionWorld(robot(tmp_path, BOX.format("1 1 1"), seen), visual=False).names == ("a", "c")
 
 
 def test_a_robot_without_any_geometry_is_refused(tmp_path: Path) -> None:

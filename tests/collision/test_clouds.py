@@ -1,3 +1,5 @@
+"""Kind 23: points, cells and heights as obstacles."""
+
 import numpy as np
 import pytest
 

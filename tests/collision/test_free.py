@@ -1,4 +1,4 @@
-"""What a world calls free is free, and what it calls a collision is one, aligned or not, whatever was asked before."""
+"""Kinds 2 and 21: what a world calls free is free, and what it calls a collision is one, whatever was asked before."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Among many obstacles a world asks about those that are near, keeps nothing for each pair, and answers the same."""
+"""Kind 22: among many obstacles a world asks about those that are near, keeps nothing by pair, and answers the same."""
 
 from __future__ import annotations
 

@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
+from pin_metaik.collision import simplify
 from pin_metaik.collision.body import robot_bodies
 from pin_metaik.collision.simplify import fit_capsule
 from tests.collision.worlds import configurations, robot_of, world_of
@@ -28,6 +29,22 @@ def test_a_capsule_around_a_capsule_is_hardly_larger() -> None:
     ends, radius = fit_capsule(points @ np.linalg.qr(rng.standard_normal((3, 3)))[0])
     assert radius == pytest.approx(0.1, rel=0.05)
     assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(0.6, rel=0.05)
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-9, 1e-8, 1e-6, 1e-4, 1e-2])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_capsule_whose_axis_is_nearly_z_or_against_it_stands_along_it_to_the_last_digit(
+    side: float, off: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for turn in np.linspace(0.0, 6.0, 7):
+        axis = np.array([off * np.cos(turn), off * np.sin(turn), side])
+        ends = np.outer([0.2, 1.7], axis / np.linalg.norm(axis))
+        monkeypatch.setattr(simplify, "fit_capsule", lambda _, ends=ends: (ends, 0.1))
+        monkeypatch.setattr(simplify, "kept", lambda kind, content, make: make())
+        capsule, at = simplify._capsule(ends)
+        placed = [at.act(np.array([0.0, 0.0, z])) for z in (-capsule.halfLength, capsule.halfLength)]
+        assert np.abs(np.array(placed)[:: int(side)] - ends).max() < 1e-15
+        assert np.abs(at.rotation.T @ at.rotation - np.eye(3)).max() < 1e-15
 
 
 @pytest.mark.parametrize("name", ROBOTS)
