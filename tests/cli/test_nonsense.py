@@ -124,9 +124,32 @@ def test_json_says_versions_units_and_why(call) -> None:
         assert answer["units"]["angle"] == unit
         assert answer["why"]
         assert {"pin_metaik", "pin", "coal", "numpy"} <= answer["versions"].keys()
-    answer = json.loads(call("plan", "ten_obstacles", "--json")[1])
-    assert answer["versions"]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("plan", "ten_obstacles"),
+        ("stewart", "analyse", "stroke_50", "--cells", "8"),
+        ("stewart", "forward", "stroke_50", *("200",) * 6),
+        ("stewart", "follow", "stroke_50", "way.csv"),
+        ("stewart", "design", "stroke_50", "--evaluations", "20"),
+        ("stewart", "types", "stroke_50", "--evaluations", "20", "--runs", "1"),
+    ],
+    ids=lambda words: " ".join(words[:2]),
+)
+def test_every_json_says_versions_and_units(call, words: tuple[str, ...]) -> None:
+    Path("way.csv").write_text("time,x,y,z\n0,0,0,200\n1,0,0,205\n")
+    answer = json.loads(call(*words, "--json")[1])
+    assert {"pin_metaik", "pin", "coal", "numpy"} <= answer["versions"].keys()
     assert answer["units"]["angle"] == "rad"
+
+
+def test_a_warning_is_one_line_without_a_place_in_our_code(call) -> None:
+    Path("weak.urdf").write_text(TWO_LINKS.format(mesh="nan.obj").replace('effort="1"', 'effort="-1"'))
+    code, _, error = call("solve", "weak.urdf", "--position", "0", "0", "0")
+    assert code == 0
+    assert error == "warning: two: joint 'j' has effort = -1: taken as 1\n"
 
 
 def test_locked_joints_stay_where_the_start_has_them(call) -> None:
@@ -147,6 +170,7 @@ def test_pairs_that_may_collide_are_left_alone(call) -> None:
 
 def test_degrees_given_as_radians_are_asked_about(call) -> None:
     assert "--degrees" in call("solve", "ur5", *POSE, "--rpy", 0, 90, 0)[2]
+    assert "positions are in metres" in call("solve", "ur5", "--position", 300, 300, 400)[1]
     assert "--degrees" not in call("solve", "ur5", *POSE, "--rpy", 0, 1.5, 0)[2]
 
 
