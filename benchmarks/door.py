@@ -301,7 +301,7 @@ def alarm(seconds: float) -> Iterator[None]:
 
 
 def listed(every: int = 1) -> Iterator[Call]:
-    """Every argument of every door replaced by every odd value of the list, one at a time, or some of that: every so many."""
+    """Every argument of every door replaced by every odd value of the list, one at a time; or every so many of that."""
     places = ((door, parameter) for door in doors().values() for parameter in CALLS[door.name]())
     for (door, parameter), make in itertools.islice(itertools.product(places, ODD), 0, None, every):
         value = make()

