@@ -2,11 +2,12 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +18,7 @@ from pyarrow import parquet
 
 import pin_metaik as mik
 from pin_metaik.compare import METHODS as KNOWN
-from pin_metaik.compare import Answer, Suite, compare, read_results, replay
+from pin_metaik.compare import Answer, Suite, compare, read_results, replay, write_report
 from pin_metaik.compare.case import NoTask
 from pin_metaik.compare.environment import read_environment
 from pin_metaik.compare.record import Record
@@ -344,6 +345,32 @@ def test_folders_from_before_robots_travelled_are_read(whole: Path, tmp_path: Pa
     values = read_record(whole).to_json()
     del values["files"], values["absent"]
     assert Record.from_json(values) == read_record(whole)
+
+
+@pytest.mark.parametrize(
+    ("file", "change", "says"),
+    [
+        ("suite.json", lambda text: text.replace('"budget"', '"bugdet"'), "unknown key 'bugdet'"),
+        ("suite.json", lambda text: text.replace('"about"', '"around"'), "unknown key 'around'"),
+        ("suite.json", lambda text: text.replace('"rng"', '"absent"'), "rng is missing"),
+        ("suite.json", lambda text: text.replace('"targets": 3', '"targets": "3"'), "targets: expected a whole number"),
+        ("suite.json", lambda text: text[:-9], "is not JSON"),
+        ("suite.json", lambda text: "[]", "is not an object"),
+        ("environment.json", lambda text: text[:-9], "is not JSON"),
+        ("environment.json", lambda text: "{}", "is not a list"),
+        ("environment.json", lambda text: text.replace('"cores"', '"kernels"'), "unknown key 'kernels'"),
+    ],
+)
+def test_what_somebody_spoilt_in_a_folder_is_named(
+    file: str, change: Callable[[str], str], says: str, whole: Path, tmp_path: Path
+) -> None:
+    folder = Path(shutil.copytree(whole, tmp_path / "spoilt"))
+    text = (folder / file).read_text()
+    (folder / file).write_text(change(text))
+    assert (folder / file).read_text() != text
+    for call in (lambda: write_report(folder), lambda: compare(SMALL, folder)):
+        with pytest.raises(InvalidSetting, match=says):
+            call()
 
 
 def test_a_trial_that_was_never_asked_for_is_named(whole: Path) -> None:
