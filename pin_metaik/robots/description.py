@@ -53,7 +53,7 @@ class Description:
     @property
     def what(self) -> str:
         """The file, as messages call it."""
-        return "the URDF text" if self.source is None else str(self.source)
+        return str(self.source or f"the {'MJCF' if self.is_mjcf else 'URDF'} text")
 
     @property
     def is_mjcf(self) -> bool:
@@ -162,7 +162,8 @@ class Description:
             try:
                 model = pin.buildModelFromMJCF(path)
             except (ValueError, RuntimeError) as error:
-                raise InvalidModel(f"{self.what} is not MJCF that can be read: {prints() or explain(error)}") from None
+                why = (prints() or explain(error)).replace(path, self.what)
+                raise InvalidModel(f"{self.what} is not MJCF that can be read: {why}") from None
             printed = list(filter(None, [prints()]))
         left = [f"{self.what} has <{name}>, which is not read" for name in _NOT_READ if f"<{name}" in self.text]
         return model, [*left, *printed]
