@@ -46,6 +46,8 @@ def reproduce(
         if figures:
             need_figures()
         writable(out, folder=True)
+        for before in out.glob(f"{name}*"):
+            writable(before)
     paper = PAPERS[name]
     options = Options(runs or (min(QUICK_RUNS, paper.runs) if quick else paper.runs), quick, long, rng)
     console = Console(width=None if sys.stdout.isatty() else WIDE)

@@ -20,7 +20,7 @@ from pin_metaik.compare.baggage import pack
 from pin_metaik.compare.case import NoTask
 from pin_metaik.compare.lock import locked
 from pin_metaik.compare.record import Record
-from pin_metaik.compare.store import Appender, check_record, need_parquet, read_rows, write_parquet, write_record
+from pin_metaik.compare.store import ROWS, Appender, check_record, need_parquet, read_rows, write_parquet, write_record
 from pin_metaik.compare.suite import Suite
 from pin_metaik.compare.trial import Trial
 from pin_metaik.compare.unit import Unit
@@ -118,6 +118,7 @@ def compare(
     record = replace(Record.of(suite), absent=absent)
     check_record(folder, record)
     folder.mkdir(parents=True, exist_ok=True)
+    writable(folder / ROWS)
     with locked(folder, "comparison"):
         write_record(folder, replace(record, files=pack(folder, suite)))
         environment.record(folder, command)

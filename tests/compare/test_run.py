@@ -26,7 +26,7 @@ from pin_metaik.compare.report.by_case import by_case
 from pin_metaik.compare.report.overview import reading
 from pin_metaik.compare.store import ROWS, read_record, read_rows
 from pin_metaik.compare.trial import generator
-from pin_metaik.errors import InvalidSetting, MetaIKError, MissingExtra, UnknownName
+from pin_metaik.errors import CannotWrite, InvalidSetting, MetaIKError, MissingExtra, UnknownName
 from tests.compare.suites import IMPOSSIBLE, JUMPING, METHODS, SMALL, Interrupted, rows
 
 ROOT = Path(__file__).parents[2]
@@ -371,6 +371,12 @@ def test_what_somebody_spoilt_in_a_folder_is_named(
     for call in (lambda: write_report(folder), lambda: compare(SMALL, folder)):
         with pytest.raises(InvalidSetting, match=says):
             call()
+
+
+def test_rows_that_cannot_be_written_are_told_before_the_work(tmp_path: Path) -> None:
+    (tmp_path / ROWS).mkdir()
+    with pytest.raises(CannotWrite, match=ROWS):
+        compare(SMALL, tmp_path)
 
 
 def test_a_trial_that_was_never_asked_for_is_named(whole: Path) -> None:
