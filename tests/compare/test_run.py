@@ -250,7 +250,7 @@ def test_a_dask_cluster_gives_the_same_rows(whole: Path, tmp_path: Path, schedul
 
 def test_a_cluster_that_does_not_answer_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr("pin_metaik.compare.run.CONNECTING", 0.5)
+    monkeypatch.setattr("pin_metaik.compare.workers.CONNECTING", 0.5)
     for scheduler, complaint in ((None, "--scheduler ADDRESS"), ("tcp://127.0.0.1:9", "no Dask scheduler answers")):
         with pytest.raises(InvalidSetting, match=complaint):
             compare(SMALL, tmp_path / "out", backend="dask", scheduler=scheduler)
@@ -411,6 +411,23 @@ class Swallowing:
                 os.kill(os.getpid(), signal.SIGINT)
                 time.sleep(1.0)
         return Answer(x0, False, 1)
+
+
+@pytest.mark.parametrize("later", [0.0, 0.1, 0.3, 1.0])
+def test_ctrl_c_in_a_terminal_ends_all_processes_without_last_words(later: float, tmp_path: Path) -> None:
+    options = ["--targets", "500", "--jobs", "2", "--out", str(tmp_path)]
+    words = ["-m", "pin_metaik", "compare", "--robot", "ur5", "--cases", "singular", "--methods", "gwo,mtde", *options]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "env": ENVIRONMENT}
+    with subprocess.Popen([sys.executable, *words], start_new_session=True, **pipes) as process:
+        while not (tmp_path / ROWS).exists():
+            time.sleep(0.01)
+        time.sleep(later)
+        os.killpg(process.pid, signal.SIGINT)
+        said, error = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "interrupted: the same command goes on" in said
+    assert "Traceback" not in error
+    assert "arning" not in error
 
 
 def test_a_method_that_swallows_ctrl_c_ends_the_comparison_and_leaves_no_row(tmp_path: Path) -> None:
