@@ -67,6 +67,7 @@ def run() -> None:
     """Entry point of the ``pin-metaik`` command: what makes no sense becomes a line; what is left is a bug."""
     try:
         with warnings.catch_warnings():
+            warnings.simplefilter("default", UserWarning)
             warnings.showwarning = _say
             app()
     except MetaIKError as error:

@@ -14,6 +14,7 @@ from numpy.testing import assert_allclose
 
 from pin_metaik import cli
 
+READY = "from pin_metaik.cli import run; print('ready', flush=True); run()"
 POSE = ("--position", "0.3", "0.3", "0.4")
 TWO_LINKS = """<robot name="two"><link name="base"/><link name="arm"><collision><geometry><mesh filename="{mesh}"/>
 </geometry></collision></link><joint name="j" type="revolute"><parent link="base"/><child link="arm"/>
@@ -190,9 +191,11 @@ def test_the_list_of_commands_has_whole_sentences(call) -> None:
 )
 def test_control_c_ends_with_130(command: tuple[str, ...]) -> None:
     done = subprocess.Popen(
-        [sys.executable, "-m", "pin_metaik", *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", READY, *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
-    time.sleep(2.0)
+    assert done.stdout is not None
+    assert done.stdout.readline() == "ready\n"
+    time.sleep(0.5)
     if done.poll() is not None:
         pytest.skip("it was over before it could be interrupted")
     done.send_signal(signal.SIGINT)

@@ -230,6 +230,7 @@ def test_a_file_that_is_odd_is_read_without_a_word_and_whole(what, load, capfd):
     assert capfd.readouterr() == ("", "")
 
 
+@pytest.mark.filterwarnings("ignore:.*which is not read")  # both limits
 @pytest.mark.parametrize("what", SAID)
 def test_what_is_mended_guessed_or_not_held_is_one_warning_that_names_it(what, load, capfd):
     content, plain, message = SAID[what]
