@@ -121,6 +121,10 @@ def test_a_result_is_true_when_it_is_a_success() -> None:
     chain = mik.Chain(mik.load_robot("ur5"), "tool0")
     assert mik.solve_ik(chain, [0.3, 0.3, 0.4])
     assert not mik.solve_ik(chain, [3.0, 0.3, 0.4])
+    for near, far in (([0.3, 0.3, 0.4], [0.3, 0.3, 0.41]), ([0.3, 0.3, 0.4], [3.0, 0.3, 0.4])):
+        assert bool(mik.solve_ik_batch(chain, [near, far])) is (far[0] < 1.0)
+        assert bool(mik.solve_ik_path(chain, [near, far])) is (far[0] < 1.0)
+    assert not mik.solve_ik_path(chain, [[0.3, 0.3, 0.4], [-0.3, -0.3, 0.4]], max_step=0.01)
     assert mobile.plan_path(mobile.load_scene("ten_obstacles"))
     found = stewart.Designed(stewart.load_mechanism("stroke_50"), None, None)  # type: ignore[arg-type]
     assert not found
