@@ -16,6 +16,7 @@ import pinocchio as pin
 
 from pin_metaik.arguments import checked, checked_as
 from pin_metaik.errors import InvalidModel
+from pin_metaik.optimize.settings import one_of
 from pin_metaik.robots import plausible
 from pin_metaik.robots.couplings import NO_COUPLINGS, coupled, make_ready, read_couplings, with_own_names
 from pin_metaik.robots.prints import caught_prints, explain
@@ -49,6 +50,10 @@ class Description:
     source: Path | None
     base: Base = "fixed"
     mimic: bool = True
+
+    def __post_init__(self) -> None:
+        """Raises InvalidSetting for a base that is none."""
+        one_of("base", self.base, Base)
 
     @property
     def what(self) -> str:
@@ -87,7 +92,9 @@ class Description:
 
         Raises:
             InvalidModel: If a mesh is missing or unreadable, or a shape cannot be read; the message names it.
+            InvalidSetting: If ``shapes`` are neither.
         """
+        one_of("shapes", shapes, Shapes)
         geometry = self._mjcf_geometry(model, shapes) if self.is_mjcf else self._urdf_geometry(model, shapes)
         return geometry, plausible.meshes(geometry)
 
