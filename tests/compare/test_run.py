@@ -283,14 +283,13 @@ def test_where_no_arm_has_any_of_the_cases_that_is_said_before_the_work(tmp_path
 def test_a_second_process_is_refused_and_a_killed_one_leaves_no_lock(tmp_path: Path) -> None:
     holder = "import sys, time; from pathlib import Path; from pin_metaik.compare.lock import locked\n"
     holder += f"with locked(Path({str(tmp_path)!r}), 'comparison'): print('held', flush=True); time.sleep(60)"
-    running = subprocess.Popen([sys.executable, "-c", holder], env=ENVIRONMENT, stdout=subprocess.PIPE)
-    try:
-        assert running.stdout is not None and running.stdout.readline() == b"held\n"
-        with pytest.raises(InvalidSetting, match=rf"another process \({running.pid}\) works on the comparison"):
-            compare(SMALL, tmp_path)
-    finally:
-        running.kill()
-        running.wait()
+    with subprocess.Popen([sys.executable, "-c", holder], env=ENVIRONMENT, stdout=subprocess.PIPE) as running:
+        try:
+            assert running.stdout is not None and running.stdout.readline() == b"held\n"
+            with pytest.raises(InvalidSetting, match=rf"another process \({running.pid}\) works on the comparison"):
+                compare(SMALL, tmp_path)
+        finally:
+            running.kill()
     outcome = compare(Suite(("ur5",), ("random",), ("lm",), targets=1, budget=50), tmp_path)
     assert outcome.done == 1
     assert not list(tmp_path.glob(".*.lock"))
