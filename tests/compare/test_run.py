@@ -418,7 +418,7 @@ def test_ctrl_c_in_a_terminal_ends_all_processes_without_last_words(later: float
     words = ["-m", "pin_metaik", "compare", "--robot", "ur5", "--cases", "singular", "--methods", "gwo,mtde", *options]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "env": ENVIRONMENT}
     with subprocess.Popen([sys.executable, *words], start_new_session=True, **pipes) as process:
-        while not (tmp_path / ROWS).exists():
+        while not ((tmp_path / "environment.json").exists() and (tmp_path / ROWS).exists()):
             time.sleep(0.01)
         time.sleep(later)
         os.killpg(process.pid, signal.SIGINT)
