@@ -12,7 +12,9 @@ import argparse
 import contextlib
 import datetime
 import enum
+import functools
 import inspect
+import itertools
 import os
 import pickle
 import platform
@@ -270,11 +272,16 @@ def applicable(parameter: str, value: object) -> bool:
 
 def draw(data: st.DataObject) -> Call:
     """A door, and odd values for one to three of its arguments, as hypothesis draws them."""
-    door = data.draw(st.sampled_from([door for door in doors().values() if CALLS[door.name]()]), label="door")
-    names = sorted(CALLS[door.name]())
+    door, names = data.draw(st.sampled_from(_with_arguments()), label="door")
     chosen = data.draw(st.lists(st.sampled_from(names), min_size=1, max_size=3, unique=True), label="arguments")
     odd = {name: data.draw(drawn(), label=name) for name in chosen}
     return door, {name: value for name, value in odd.items() if applicable(name, value)}
+
+
+@functools.cache
+def _with_arguments() -> list[tuple[Door, list[str]]]:
+    """Every door that takes arguments, and their names."""
+    return [(door, sorted(taken)) for door in doors().values() if (taken := CALLS[door.name]())]
 
 
 @contextlib.contextmanager
@@ -293,14 +300,13 @@ def alarm(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
-def listed() -> Iterator[Call]:
-    """Every argument of every door replaced by every odd value of the list, one at a time."""
-    for door in doors().values():
-        for parameter in CALLS[door.name]():
-            for make in ODD:
-                value = make()
-                if applicable(parameter, value):
-                    yield door, {parameter: value}
+def listed(every: int = 1) -> Iterator[Call]:
+    """Every argument of every door replaced by every odd value of the list, one at a time; or every so many of that."""
+    places = ((door, parameter) for door in doors().values() for parameter in CALLS[door.name]())
+    for (door, parameter), make in itertools.islice(itertools.product(places, ODD), 0, None, every):
+        value = make()
+        if applicable(parameter, value):
+            yield door, {parameter: value}
 
 
 def _shown(value: object) -> str:
@@ -366,6 +372,8 @@ def sweep(todo: list[Call]) -> dict[int, Knock]:
 def drawn_calls(count: int, seed: int) -> list[Call]:
     """Calls with several arguments replaced, as hypothesis draws them."""
     found: list[Call] = []
+    if not count:
+        return found
 
     @hypothesis.seed(seed)
     @hypothesis.settings(
@@ -375,8 +383,7 @@ def drawn_calls(count: int, seed: int) -> list[Call]:
     def collect(data: st.DataObject) -> None:
         found.append(draw(data))
 
-    if count:
-        collect()
+    collect()
     return found
 
 

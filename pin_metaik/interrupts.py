@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import FrameType
 from typing import Any, TypeVar
 
@@ -48,6 +49,22 @@ def wrapped(search: Callable[[], T], wrap: Callable[[T], U]) -> U:
     except Interrupted as stop:
         raise Interrupted(wrap(stop.result)) from None
     return wrap(found)
+
+
+@contextmanager
+def deaf_children() -> Iterator[None]:
+    """Processes and threads that are begun meanwhile never hear Ctrl-C, which a terminal sends to all: their parent's.
+
+    Where signals cannot be blocked, as on Windows, they do hear it.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 class Pressed:

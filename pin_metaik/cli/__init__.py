@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from typing import Annotated, Any, NoReturn
 
 import typer
@@ -65,12 +66,20 @@ def main(
 def run() -> None:
     """Entry point of the ``pin-metaik`` command: what makes no sense becomes a line; what is left is a bug."""
     try:
-        app()
+        with warnings.catch_warnings():
+            warnings.simplefilter("default", UserWarning)
+            warnings.showwarning = _say
+            app()
     except MetaIKError as error:
         _refuse(str(error))
     except OSError as error:  # of a file, mostly: full, gone, or not ours
         reason = error.strerror or str(error) or type(error).__name__
         _refuse(f"{error.filename}: {reason}" if error.filename else reason)
+
+
+def _say(message: Warning | str, *_: object, **__: object) -> None:
+    """A warning as one line: where in this package it arose is no news to who typed a command."""
+    Console(stderr=True).print(f"warning: {message}", style="yellow", markup=False, highlight=False, soft_wrap=True)
 
 
 def _refuse(why: str) -> NoReturn:

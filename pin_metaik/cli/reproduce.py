@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext, suppress
 from datetime import date
 from pathlib import Path
 from typing import Annotated
@@ -12,6 +14,7 @@ from rich.console import Console
 
 from pin_metaik.cli.codes import INTERRUPTED
 from pin_metaik.compare import papers
+from pin_metaik.compare.lock import locked
 from pin_metaik.compare.papers import PAPERS, Options, Reproduction
 from pin_metaik.compare.report.show import show
 from pin_metaik.compare.report.write import need_figures, write
@@ -43,17 +46,32 @@ def reproduce(
         if figures:
             need_figures()
         writable(out, folder=True)
+        for before in out.glob(f"{name}*"):
+            writable(before)
     paper = PAPERS[name]
     options = Options(runs or (min(QUICK_RUNS, paper.runs) if quick else paper.runs), quick, long, rng)
     console = Console(width=None if sys.stdout.isatty() else WIDE)
     console.print(f"{paper.title}\n{paper.source}", markup=False, highlight=False)
-    again = kept(lambda: papers.reproduce(paper, options, Console(stderr=True)))
-    show(again.sections, console)
-    console.print(f"\n{again}", style="yellow" if again.partial else None, markup=False, highlight=False)
-    if out is not None:
-        for path in write(out, name, _preamble(again), again.sections, figures):
-            console.print(str(path), markup=False, highlight=False, soft_wrap=True)
+    with nullcontext() if out is None else _alone_in(out):
+        again = kept(lambda: papers.reproduce(paper, options, Console(stderr=True)))
+        show(again.sections, console)
+        console.print(f"\n{again}", style="yellow" if again.partial else None, markup=False, highlight=False)
+        if out is not None:
+            for path in write(out, name, _preamble(again), again.sections, figures):
+                console.print(str(path), markup=False, highlight=False, soft_wrap=True)
     raise typer.Exit(INTERRUPTED if again.partial else 0)
+
+
+@contextmanager
+def _alone_in(out: Path) -> Iterator[None]:
+    """Make the folder, and keep other processes out of it; what stays empty is taken away again."""
+    out.mkdir(parents=True, exist_ok=True)
+    try:
+        with locked(out, "reproduction"):
+            yield
+    finally:
+        with suppress(OSError):  # it holds something
+            out.rmdir()
 
 
 def _preamble(again: Reproduction) -> list[str]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import sys
 from collections.abc import Iterable
 from dataclasses import replace
 from math import degrees, radians, tau
@@ -16,7 +14,7 @@ from rich.console import Console
 
 from pin_metaik.cli.many import split
 from pin_metaik.cli.start import configuration, turns
-from pin_metaik.cli.versions import versions
+from pin_metaik.cli.versions import print_json
 from pin_metaik.collision import CollisionWorld, load_scene, scene_names
 from pin_metaik.errors import InvalidSetting, InvalidTarget
 from pin_metaik.ik import REFINERS, IKResult, IKSolver, Target, solve_ik
@@ -25,6 +23,7 @@ from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.pose import rpy_matrix
 from pin_metaik.optimize import ALGORITHMS, Budget
 from pin_metaik.robots import Robot, load_robot
+from pin_metaik.said import warn
 
 ALONE = "alone"
 """As a scene: the robot with itself, and nothing around it."""
@@ -92,11 +91,12 @@ def solve(
     obstacles = None if world is None else _world(loaded, world, margin or 0.0, srdf, allow or (), visual)
     target = _target(position, rpy, in_degrees)
     if not in_degrees and any(abs(angle) > tau for angle in rpy or ()):
-        print("pin-metaik: --rpy is in radians; for degrees give --degrees, too", file=sys.stderr)
+        warn("--rpy is in radians; for degrees give --degrees, too")
     _warm_up(chain, target, solver)
     result = solve_ik(chain, target, start, solver=solver, world=obstacles, rng=rng)
     if as_json:
-        print(json.dumps(report(loaded.name, chain, result, in_degrees), allow_nan=False))
+        units = {"length": "m", "angle": "deg" if in_degrees else "rad", "orientation_error": "rad", "time": "s"}
+        print_json(report(loaded.name, chain, result, in_degrees), units)
     else:
         show(loaded.name, chain, result, in_degrees)
     raise typer.Exit(0 if result.success else 1)
@@ -139,11 +139,9 @@ def _target(
 def report(robot: str, chain: Chain, result: IKResult, in_degrees: bool) -> dict[str, object]:
     """A result as plain values; q is Pinocchio's whole configuration, joints the chain's coordinates by name.
 
-    Angles are in the unit that "units" names, in q and in joints alike.
+    Angles are in degrees or radians, in q and in joints alike.
     """
     return {
-        "versions": versions(),
-        "units": {"length": "m", "angle": "deg" if in_degrees else "rad", "orientation_error": "rad", "time": "s"},
         "robot": robot,
         "frame": chain.frames[0],
         "status": str(result.status),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, radians, sin
+from math import cos, isfinite, radians, sin
 
 import numpy as np
 import pinocchio as pin
@@ -58,6 +58,9 @@ def _set(model: pin.Model, q: NDArray[np.float64], name: str, value: float, in_d
 
 def _number(text: str) -> float:
     try:
-        return float(text)
+        value = float(text)
     except ValueError:
         raise InvalidConfiguration(f"{text!r} is no number: give --q0 JOINT=VALUE or all entries of q") from None
+    if not isfinite(value):
+        raise InvalidConfiguration(f"--q0 takes finite numbers, got {text!r}")
+    return value

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -21,6 +20,7 @@ from pin_metaik.collision.simplify import Simplify, Solid, solid_of
 from pin_metaik.errors import InvalidGeometry, InvalidSetting
 from pin_metaik.kinematics.model import model_of
 from pin_metaik.notice import notice
+from pin_metaik.said import warn
 
 
 class VisualGeometry(UserWarning):
@@ -146,7 +146,7 @@ def _pieces(robot: Geometry, visual: bool) -> list[Any]:
     if not pieces:
         raise InvalidGeometry(f"{robot.name} has no collision geometry and no visual geometry: nothing to check")
     text = f"{robot.name} has no collision geometry: its visual geometry is checked for collisions instead"
-    warnings.warn(text, VisualGeometry, stacklevel=4)  # at the call of CollisionWorld
+    warn(text, VisualGeometry)
     return pieces
 
 

@@ -51,7 +51,7 @@ def _read(path: Path | None) -> Arrays | None:
     if path is None:
         return None
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
             return {name: stored[name] for name in stored.files}
     except Exception:  # a damaged archive fails in a dozen ways: whichever it is, it is made again
         return None

@@ -110,7 +110,8 @@ class HeightField:
 
     def __post_init__(self) -> None:
         """Raises InvalidGeometry unless the heights are finite, two each way at least, and above the base."""
-        size = list(self.size) if isinstance(self.size, list | tuple | np.ndarray) else []
+        given = self.size.ravel() if isinstance(self.size, np.ndarray) else self.size
+        size = list(given) if isinstance(given, list | tuple | np.ndarray) else []
         if len(size) != 2:
             raise InvalidGeometry(f"the size of a height field is two lengths in m, got {self.size!r}")
         object.__setattr__(self, "size", tuple(_length("size of a height field", edge) for edge in size))

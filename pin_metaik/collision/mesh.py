@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -15,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.collision.numbers import real
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.notice import notice
+from pin_metaik.said import warn
 
 FLAT = 1e-9  # thickness of a set of points, in its lengths, below which it has none
 GROWTH = 1e-4  # of their distance from the centre that points may move outward, so as not to lie in one plane
@@ -67,10 +67,9 @@ class Mesh:
         object.__setattr__(self, "hull", convex_hull(vertices, self.name))
         extent = float(np.ptp(vertices, axis=0).max())
         if extent > HUGE:
-            warnings.warn(
+            warn(
                 f"{self.name} is {extent:.4g} m large: if its file is in millimetres, read it with scale=0.001",
                 MeshSize,
-                stacklevel=3,
             )
 
     @staticmethod

@@ -11,9 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from pin_metaik.compare.cost import FK_WITH_JACOBIAN
+from pin_metaik.compare.reading import entries, read_json
 from pin_metaik.compare.store import replace_text
+from pin_metaik.errors import InvalidSetting
 
 FILE = "environment.json"
+KEYS = ("date", "command", "processor", "cores", "system", "python", "packages", "kernel_evaluations")
 PACKAGES = (
     "pin-metaik", "pin", "coal", "numpy", "numba", "scipy", "qpsolvers", "osqp", "daqp", "joblib", "distributed",
     "cma", "ikpy", "pin-pink", "pytracik", "roboticstoolbox-python",
@@ -44,10 +47,16 @@ def record(folder: Path, command: str) -> None:
 
 
 def read_environment(folder: Path) -> list[dict[str, Any]]:
-    """The processes that worked on the comparison in a folder, in their order."""
+    """The processes that worked on the comparison in a folder, in their order.
+
+    Raises:
+        InvalidSetting: The file that should list them does not.
+    """
     path = folder / FILE
-    sessions: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
-    return sessions
+    sessions = read_json(path) if path.exists() else []
+    if not isinstance(sessions, list):
+        raise InvalidSetting(f"{path} is not a list of sessions")
+    return [entries(session, f"session {i} of {path}", KEYS) for i, session in enumerate(sessions, start=1)]
 
 
 def _version(package: str) -> str | None:

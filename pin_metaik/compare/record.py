@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
+from pin_metaik.arguments import checked
 from pin_metaik.compare.case import Case
 from pin_metaik.compare.method import Method
+from pin_metaik.compare.reading import entries
 from pin_metaik.compare.suite import Suite
 from pin_metaik.compare.trial import Trial
 from pin_metaik.errors import InvalidSetting
 
+RECORD = "suite.json"
+LATER = ("files", "absent")
+"""What records of before did not have."""
 
+
+@checked
 @dataclass(frozen=True)
 class CaseRecord:
     """A case.
@@ -31,6 +38,7 @@ class CaseRecord:
     success: str
 
 
+@checked
 @dataclass(frozen=True)
 class Record:
     """A comparison.
@@ -72,10 +80,23 @@ class Record:
         )
 
     @staticmethod
-    def from_json(values: dict[str, Any]) -> Record:
-        """What ``to_json`` made."""
-        cases = {name: CaseRecord(**case) for name, case in values["cases"].items()}
-        return Record(**{**values, "cases": cases})
+    def from_json(values: object, place: object = RECORD) -> Record:
+        """What ``to_json`` made.
+
+        Raises:
+            InvalidSetting: It did not make that; the message names the place and the key.
+        """
+        known = [one.name for one in fields(Record)]
+        content = entries(values, place, [name for name in known if name not in LATER], LATER)
+        inner = [one.name for one in fields(CaseRecord)]
+        try:
+            cases = {
+                name: CaseRecord(**entries(case, f"case {name!r}", inner))
+                for name, case in entries(content["cases"], "cases", (), content["cases"]).items()
+            }
+            return Record(**{**content, "cases": cases})
+        except InvalidSetting as error:
+            raise InvalidSetting(f"{place}: {error}") from None
 
     def to_json(self) -> dict[str, Any]:
         """As plain values."""

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from importlib.util import find_spec
 from pathlib import Path
 from time import perf_counter
-from typing import Any, Literal, TypeAlias
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -20,19 +16,15 @@ from pin_metaik.compare.baggage import pack
 from pin_metaik.compare.case import NoTask
 from pin_metaik.compare.lock import locked
 from pin_metaik.compare.record import Record
-from pin_metaik.compare.store import Appender, check_record, need_parquet, read_rows, write_parquet, write_record
+from pin_metaik.compare.store import ROWS, Appender, check_record, need_parquet, read_rows, write_parquet, write_record
 from pin_metaik.compare.suite import Suite
-from pin_metaik.compare.trial import Trial
-from pin_metaik.compare.unit import Unit
-from pin_metaik.errors import InvalidSetting, MissingExtra
-from pin_metaik.interrupts import Interrupted
+from pin_metaik.compare.workers import Backend, need_joblib, worked
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.interrupts import Interrupted, Pressed
 from pin_metaik.optimize.settings import one_of
 from pin_metaik.output import writable
 
-Backend: TypeAlias = Literal["loky", "dask"]
-
 MOST_JOBS = 10_000
-CONNECTING = 10.0  # s
 
 
 @dataclass(frozen=True)
@@ -118,6 +110,7 @@ def compare(
     record = replace(Record.of(suite), absent=absent)
     check_record(folder, record)
     folder.mkdir(parents=True, exist_ok=True)
+    writable(folder / ROWS)
     with locked(folder, "comparison"):
         write_record(folder, replace(record, files=pack(folder, suite)))
         environment.record(folder, command)
@@ -132,53 +125,16 @@ def compare(
             return Outcome(folder, *counts, tuple(f"{name}: {why}" for name, why in absent.items()), error)
 
         try:
-            with _bar(console) as bar, Appender(folder) as file:
+            with Pressed() as pressed, _bar(console) as bar, Appender(folder) as file:
                 bar_task = bar.add_task("comparing", total=record.trials, completed=before)
-                for trials in _worked(list(suite.units(rows.keys(), absent)), jobs, backend, scheduler):
+                for trials in worked(list(suite.units(rows.keys(), absent)), jobs, backend, scheduler):
+                    pressed.check()
                     file.add(trials)
                     rows.update((trial.key, trial) for trial in trials)
                     bar.update(bar_task, completed=len(rows), description=f"{trials[-1].robot}, {trials[-1].case}")
         except KeyboardInterrupt:
             raise Interrupted(outcome()) from None
         return outcome()
-
-
-def need_joblib() -> None:
-    """Make sure that tasks can be handed to workers.
-
-    Raises:
-        MissingExtra: joblib is not installed.
-    """
-    if find_spec("joblib") is None:
-        raise MissingExtra("comparing methods", "compare")
-
-
-def _worked(units: list[Unit], jobs: int, backend: Backend, scheduler: str | None) -> Iterator[list[Trial]]:
-    """The rows of units, in the order in which they are finished."""
-    from joblib import Parallel, delayed, parallel_config
-
-    with contextlib.ExitStack() as stack:
-        chosen: dict[str, Any] = {"backend": backend, "n_jobs": jobs}
-        if backend == "dask":
-            chosen |= {"client": stack.enter_context(_cluster(scheduler)), "n_jobs": -1}
-        stack.enter_context(parallel_config(**chosen))
-        yield from Parallel(return_as="generator_unordered", pre_dispatch="3*n_jobs")(
-            delayed(Unit.work)(unit) for unit in units
-        )
-
-
-def _cluster(scheduler: str | None) -> Any:
-    """A client of a Dask cluster, to be closed."""
-    if find_spec("distributed") is None:
-        raise MissingExtra("a Dask cluster", "cluster")
-    from distributed import Client
-
-    if scheduler is None:
-        raise InvalidSetting("name the Dask cluster: --scheduler ADDRESS, e.g. tcp://localhost:8786")
-    try:
-        return Client(scheduler, timeout=CONNECTING)  # type: ignore[no-untyped-call]  # it carries no types
-    except (OSError, ValueError) as error:
-        raise InvalidSetting(f"no Dask scheduler answers at {scheduler}: {error}") from None
 
 
 def _bar(console: Console | None) -> Progress:

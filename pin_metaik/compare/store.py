@@ -9,12 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from pin_metaik.arguments import checked
-from pin_metaik.compare.record import Record
+from pin_metaik.compare.reading import read_json
+from pin_metaik.compare.record import RECORD, Record
 from pin_metaik.compare.results import Results
 from pin_metaik.compare.trial import Trial
 from pin_metaik.errors import InvalidSetting, MissingExtra
 
-ROWS, PARQUET, RECORD = "rows.jsonl", "rows.parquet", "suite.json"
+ROWS, PARQUET = "rows.jsonl", "rows.parquet"
 
 
 def need_parquet() -> None:
@@ -46,12 +47,12 @@ def read_record(folder: Path) -> Record:
     """The comparison of a folder.
 
     Raises:
-        InvalidSetting: The folder holds none.
+        InvalidSetting: The folder holds none, or what it holds is none.
     """
     path = folder / RECORD
     if not path.exists():
         raise InvalidSetting(f"{folder} holds no comparison: make one with pin-metaik compare --out {folder}")
-    return Record.from_json(json.loads(path.read_text(encoding="utf-8")))
+    return Record.from_json(read_json(path), path)
 
 
 def read_rows(folder: Path) -> list[Trial]:

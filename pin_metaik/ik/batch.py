@@ -63,6 +63,10 @@ class IKBatch:
     world: CollisionWorld | None = field(default=None, repr=False)
     contacts: dict[int, tuple[Contact, ...]] = field(default_factory=dict, repr=False)
 
+    def __bool__(self) -> bool:
+        """Whether every target is met."""
+        return bool(self.success.all())
+
     def __len__(self) -> int:
         return len(self.q)
 

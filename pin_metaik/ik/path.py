@@ -55,6 +55,10 @@ class IKPath:
         """Whether every pose is met and no step is longer than the bound."""
         return bool(self.success.all()) and not self.breaks
 
+    def __bool__(self) -> bool:
+        """Whether it is continuous."""
+        return self.continuous
+
     @property
     def x(self) -> NDArray[np.float64]:
         """(k, n) the chain's coordinates; those of continuous joints run on through whole turns."""

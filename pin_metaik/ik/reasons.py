@@ -12,6 +12,8 @@ from pin_metaik.ik.proof import Proof
 from pin_metaik.kinematics import Chain
 
 SHOWN = 3  # contacts in a sentence
+FAR = 20.0  # m; farther than anybody means to reach with an arm
+FAR_OFF = " (positions are in metres)"
 
 
 def out_of_reach(problem: IKProblem, nearest: str) -> str:
@@ -33,7 +35,7 @@ def too_far(problem: IKProblem) -> str:
     at, behind = problem.gaps(t)
     whose = f"{problem.chain.frames[t]} is " if len(gaps) > 1 else ""
     if at > 0.0:
-        return f"{whose}out of reach: at least {at:.3g} m beyond what the links can span"
+        return f"{whose}out of reach: at least {at:.3g} m beyond what the links can span{FAR_OFF if at > FAR else ''}"
     return (
         f"{whose}out of reach with this orientation: it puts the wrist, a point of the last joint's axis, at least "
         f"{behind:.3g} m beyond what the links before it can span"

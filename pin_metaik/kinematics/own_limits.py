@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.robots.plausible import range_in_degrees
+from pin_metaik.said import warn
 
 ROOM = 1e-6  # rad or m; figures that were rounded outwards
 
@@ -26,5 +26,5 @@ def with_own(model: Limits, own: Mapping[str, tuple[float, float]]) -> Limits:
                 f"joint {name!r} has own limits [{low:g}, {high:g}] beyond [{model.lower[i]:g}, {model.upper[i]:g}]"
             )
         if remark:
-            warnings.warn(f"{remark}; they are taken as they are", UserWarning, stacklevel=3)
+            warn(f"{remark}; they are taken as they are")
     return limits

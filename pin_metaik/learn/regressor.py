@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -15,6 +14,7 @@ from pin_metaik.interrupts import wrapped
 from pin_metaik.learn.arrays import Array, as_table
 from pin_metaik.learn.network import Network
 from pin_metaik.learn.trainers import Callback, Trainer, Training, train
+from pin_metaik.said import warn
 
 EDGE = 1e-9  # of the range; as far outside is still inside
 
@@ -89,11 +89,10 @@ class Regressor:
             raise InvalidSetting(f"the network {self.network} takes {self.network.inputs} inputs, got {table.shape[1]}")
         outside = ~self.knows(table)
         if outside.any():
-            warnings.warn(
+            warn(
                 f"{outside.sum()} of {len(table)} inputs lie outside the training range "
                 f"{self.inputs.lower} to {self.inputs.upper}, e.g. {table[outside][0]}: the error there is unknown",
                 OutsideTraining,
-                stacklevel=2,
             )
         return self.predict(table)
 

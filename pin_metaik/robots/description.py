@@ -15,7 +15,8 @@ from weakref import WeakKeyDictionary
 import pinocchio as pin
 
 from pin_metaik.arguments import checked, checked_as
-from pin_metaik.errors import InvalidModel, UnknownName
+from pin_metaik.errors import InvalidModel
+from pin_metaik.optimize.settings import one_of
 from pin_metaik.robots import plausible
 from pin_metaik.robots.couplings import NO_COUPLINGS, coupled, make_ready, read_couplings, with_own_names
 from pin_metaik.robots.prints import caught_prints, explain
@@ -50,10 +51,14 @@ class Description:
     base: Base = "fixed"
     mimic: bool = True
 
+    def __post_init__(self) -> None:
+        """Raises InvalidSetting for a base that is none."""
+        one_of("base", self.base, Base)
+
     @property
     def what(self) -> str:
         """The file, as messages call it."""
-        return "the URDF text" if self.source is None else str(self.source)
+        return str(self.source or f"the {'MJCF' if self.is_mjcf else 'URDF'} text")
 
     @property
     def is_mjcf(self) -> bool:
@@ -87,10 +92,9 @@ class Description:
 
         Raises:
             InvalidModel: If a mesh is missing or unreadable, or a shape cannot be read; the message names it.
-            UnknownName: If there are no shapes of that name.
+            InvalidSetting: If ``shapes`` are neither.
         """
-        if shapes not in KINDS:
-            raise UnknownName("kind of shapes", shapes, KINDS)
+        one_of("shapes", shapes, Shapes)
         geometry = self._mjcf_geometry(model, shapes) if self.is_mjcf else self._urdf_geometry(model, shapes)
         return geometry, plausible.meshes(geometry)
 
@@ -167,7 +171,8 @@ class Description:
             try:
                 model = pin.buildModelFromMJCF(path)
             except (ValueError, RuntimeError) as error:
-                raise InvalidModel(f"{self.what} is not MJCF that can be read: {prints() or explain(error)}") from None
+                why = (prints() or explain(error)).replace(path, self.what)
+                raise InvalidModel(f"{self.what} is not MJCF that can be read: {why}") from None
             printed = list(filter(None, [prints()]))
         left = [f"{self.what} has <{name}>, which is not read" for name in _NOT_READ if f"<{name}" in self.text]
         return model, [*left, *printed]

@@ -20,7 +20,7 @@ def caught_prints() -> Iterator[Callable[[], str]]:
         caught.seek(0)
         lines = (line.strip() for line in caught.read().decode(errors="replace").splitlines())
         told = (line for line in lines if line and not line.startswith("at line"))
-        return "; ".join(line.removeprefix("Error:").removeprefix("Warning:").strip() for line in told)
+        return _sentence("; ".join(line.removeprefix("Error:").removeprefix("Warning:").strip() for line in told))
 
     with _STDERR, tempfile.TemporaryFile() as caught:
         sys.stderr.flush()
@@ -35,4 +35,8 @@ def caught_prints() -> Iterator[Callable[[], str]]:
 
 def explain(error: Exception) -> str:
     """The sentence in an exception of Pinocchio or coal, without the C++ file and function it comes from."""
-    return " ".join(str(error).rpartition("message: ")[2].split())
+    return _sentence(str(error))
+
+
+def _sentence(text: str) -> str:
+    return " ".join(text.split()).rpartition("message: ")[2]

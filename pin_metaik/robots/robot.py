@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
@@ -20,6 +19,7 @@ from pin_metaik.robots.text import read_text
 from pin_metaik.robots.tips import default_tip
 from pin_metaik.robots.urdf import to_urdf
 from pin_metaik.robots.wording import Shapes
+from pin_metaik.said import warn
 
 SUFFIXES = (".urdf", ".xml", ".mjcf", ".xacro", ".sdf", ".toml")
 
@@ -205,4 +205,4 @@ def _is_file(path: Path) -> bool:
 
 def _say(name: str, remarks: Iterable[str]) -> None:
     for remark in remarks:
-        warnings.warn(f"{name}: {remark}", UserWarning, stacklevel=4)  # _say, load_robot, its check, who called
+        warn(f"{name}: {remark}")

@@ -29,7 +29,6 @@
 from __future__ import annotations
 
 import tomllib
-import warnings
 from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from math import inf, isfinite, pi, radians
@@ -40,6 +39,7 @@ from typing import Any
 from pin_metaik.arguments import checked_as
 from pin_metaik.errors import InvalidTable, UnknownName
 from pin_metaik.robots.dh import DHRow, DHTable, JointType, Placement
+from pin_metaik.said import warn
 
 LENGTHS = {"m": 1.0, "cm": 100.0, "mm": 1000.0}  # units in a metre
 ANGLES: dict[str, Callable[[float], float]] = {"rad": float, "deg": radians}
@@ -106,7 +106,7 @@ class _Reader:
         rows = tuple(self.row(joint, number) for number, joint in enumerate(joints, start=1))
         base, tool = self.placement("base"), self.placement("tool")
         if idle := self.parameters.keys() - self.used:
-            warnings.warn(f"{self.path}: no row uses the parameters {', '.join(sorted(idle))}", stacklevel=3)
+            warn(f"{self.path}: no row uses the parameters {', '.join(sorted(idle))}")
         description, source = (self.content.get(key, "").strip() for key in ("description", "source"))
         try:
             return DHTable(self.content["name"], self.content["convention"], rows, base, tool, description, source)

@@ -15,8 +15,15 @@ from xml.parsers import expat
 
 from pin_metaik.errors import InvalidModel
 
-_MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
+_MARKS = {
+    b"\xef\xbb\xbf": "utf-8-sig",
+    b"\xff\xfe\0\0": "utf-32",
+    b"\0\0\xfe\xff": "utf-32",
+    b"\xff\xfe": "utf-16",
+    b"\xfe\xff": "utf-16",
+}
 _WIDE = {b"<\0": "utf-16-le", b"\0<": "utf-16-be"}  # UTF-16 without its mark
+_POINTER = "version https://git-lfs"
 _DECLARED = re.compile(rb"""<\?xml[^>]*encoding\s*=\s*["']([\w.:-]+)["']""")
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _AMPERSAND = re.compile(r"&(?!(?:amp|lt|gt|quot|apos|#\d+|#x[0-9a-fA-F]+);)")
@@ -35,8 +42,11 @@ def read_text(path: Path) -> str:
         text = decoded(path.read_bytes())
     except OSError as error:
         raise InvalidModel(f"cannot read {path}: {error.strerror}") from None
-    if "\0" in text:
+    text, end, _ = text.partition("\0")  # where C's strings end
+    if end and not outermost(text):
         raise InvalidModel(f"{path} is not a URDF: it is not text")
+    if text.startswith(_POINTER):
+        raise InvalidModel(f"{path} is a pointer of Git LFS, not the file it stands for: git lfs pull fetches that")
     return text
 
 

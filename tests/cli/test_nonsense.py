@@ -14,6 +14,7 @@ from numpy.testing import assert_allclose
 
 from pin_metaik import cli
 
+READY = "from pin_metaik.cli import run; print('ready', flush=True); run()"
 POSE = ("--position", "0.3", "0.3", "0.4")
 TWO_LINKS = """<robot name="two"><link name="base"/><link name="arm"><collision><geometry><mesh filename="{mesh}"/>
 </geometry></collision></link><joint name="j" type="revolute"><parent link="base"/><child link="arm"/>
@@ -53,7 +54,8 @@ NONSENSE: list[tuple[tuple[object, ...], str]] = [
     (("solve", "ur5", *POSE, "--q0", "elbow_joint=x"), "'x' is no number"),
     (("solve", "ur5", *POSE, "--q0", "elbow=1"), "did you mean 'elbow_joint'"),
     (("solve", "ur5", *POSE, "--q0", "elbow_joint=1,2"), "JOINT=VALUE for some joints or all entries"),
-    (("solve", "ur5", *POSE, "--q0", "nan,0,0,0,0,0"), "finite"),
+    (("solve", "ur5", *POSE, "--q0", "nan,0,0,0,0,0"), "finite numbers, got 'nan'"),
+    (("solve", "ur5", *POSE, "--q0", "elbow_joint=inf"), "finite numbers, got 'inf'"),
     (("solve", "ur5", *POSE, "--allow", "a,b"), "--world"),
     (("solve", "ur5", *POSE, "--srdf", "file"), "--world"),
     (("solve", "ur5", *POSE, "--world", "alone", "--allow", "a"), "two names"),
@@ -124,9 +126,32 @@ def test_json_says_versions_units_and_why(call) -> None:
         assert answer["units"]["angle"] == unit
         assert answer["why"]
         assert {"pin_metaik", "pin", "coal", "numpy"} <= answer["versions"].keys()
-    answer = json.loads(call("plan", "ten_obstacles", "--json")[1])
-    assert answer["versions"]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("plan", "ten_obstacles"),
+        ("stewart", "analyse", "stroke_50", "--cells", "8"),
+        ("stewart", "forward", "stroke_50", *("200",) * 6),
+        ("stewart", "follow", "stroke_50", "way.csv"),
+        ("stewart", "design", "stroke_50", "--evaluations", "20"),
+        ("stewart", "types", "stroke_50", "--evaluations", "20", "--runs", "1"),
+    ],
+    ids=lambda words: " ".join(words[:2]),
+)
+def test_every_json_says_versions_and_units(call, words: tuple[str, ...]) -> None:
+    Path("way.csv").write_text("time,x,y,z\n0,0,0,200\n1,0,0,205\n")
+    answer = json.loads(call(*words, "--json")[1])
+    assert {"pin_metaik", "pin", "coal", "numpy"} <= answer["versions"].keys()
     assert answer["units"]["angle"] == "rad"
+
+
+def test_a_warning_is_one_line_without_a_place_in_our_code(call) -> None:
+    Path("weak.urdf").write_text(TWO_LINKS.format(mesh="nan.obj").replace('effort="1"', 'effort="-1"'))
+    code, _, error = call("solve", "weak.urdf", "--position", "0", "0", "0")
+    assert code == 0
+    assert error == "warning: two: joint 'j' has effort = -1: taken as 1\n"
 
 
 def test_locked_joints_stay_where_the_start_has_them(call) -> None:
@@ -147,6 +172,7 @@ def test_pairs_that_may_collide_are_left_alone(call) -> None:
 
 def test_degrees_given_as_radians_are_asked_about(call) -> None:
     assert "--degrees" in call("solve", "ur5", *POSE, "--rpy", 0, 90, 0)[2]
+    assert "positions are in metres" in call("solve", "ur5", "--position", 300, 300, 400)[1]
     assert "--degrees" not in call("solve", "ur5", *POSE, "--rpy", 0, 1.5, 0)[2]
 
 
@@ -166,12 +192,14 @@ def test_the_list_of_commands_has_whole_sentences(call) -> None:
 )
 def test_control_c_ends_with_130(command: tuple[str, ...]) -> None:
     done = subprocess.Popen(
-        [sys.executable, "-m", "pin_metaik", *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", READY, *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
-    time.sleep(4.0)
+    assert done.stdout is not None
+    assert done.stdout.readline() == "ready\n"
+    time.sleep(0.5)
     if done.poll() is not None:
         pytest.skip("it was over before it could be interrupted")
     done.send_signal(signal.SIGINT)
     _, error = done.communicate(timeout=120)
-    assert done.returncode == 130
+    assert done.returncode in (130, -signal.SIGINT)  # the same to a shell; the latter while Python ends
     assert "Traceback" not in error

@@ -58,7 +58,8 @@ def test_whatever_a_damaged_file_holds_it_is_made_again(
                 place = int(rng.integers(len(whole)))
                 file.write_bytes(whole[:place] + bytes([whole[place] ^ 0xFF]) + whole[place + 1 :])
             case _:
-                np.save(file.open("wb"), np.arange(3))
+                with file.open("wb") as opened:
+                    np.save(opened, np.arange(3))
         found = kept("test", b"a", lambda: made)
         assert set(found) >= {"x", "y"}
         np.testing.assert_array_equal(found["x"], made["x"])

@@ -6,9 +6,11 @@ import pytest
 from typer.testing import CliRunner
 
 from pin_metaik import cli
+from pin_metaik.compare.lock import locked
 from pin_metaik.compare.papers import aerial_arm
 from pin_metaik.compare.papers.arm import Trial
 from pin_metaik.compare.report import write as writing
+from pin_metaik.errors import CannotWrite, InvalidSetting
 
 
 def command(*words):
@@ -40,6 +42,21 @@ def test_rv7fl_puts_the_paper_and_ours_side_by_side(tmp_path):
         "rv7fl_per_run.png",
     }
     assert "| Case 1 | MTDE | 1,000 | 300,000 | 4.861 |" in (tmp_path / "rv7fl.md").read_text()
+
+
+def test_a_page_of_before_that_cannot_be_written_over_is_told_before_the_work(tmp_path):
+    (tmp_path / "rv7fl.md").mkdir()
+    result = command("rv7fl", "--quick", "--runs", 1, "--out", tmp_path)
+    assert isinstance(result.exception, CannotWrite)
+    assert result.output == ""
+
+
+def test_one_process_at_a_time_reproduces_into_a_folder(tmp_path):
+    with locked(tmp_path, "reproduction"):
+        result = command("rv7fl", "--quick", "--runs", 1, "--out", tmp_path)
+        assert isinstance(result.exception, InvalidSetting)
+        assert "another process" in str(result.exception)
+    assert files(tmp_path) == set()
 
 
 def test_aerial_arm_puts_the_paper_and_ours_side_by_side(tmp_path, monkeypatch):

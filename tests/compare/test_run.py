@@ -2,11 +2,12 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +18,7 @@ from pyarrow import parquet
 
 import pin_metaik as mik
 from pin_metaik.compare import METHODS as KNOWN
-from pin_metaik.compare import Answer, Suite, compare, read_results, replay
+from pin_metaik.compare import Answer, Suite, compare, read_results, replay, write_report
 from pin_metaik.compare.case import NoTask
 from pin_metaik.compare.environment import read_environment
 from pin_metaik.compare.record import Record
@@ -25,7 +26,7 @@ from pin_metaik.compare.report.by_case import by_case
 from pin_metaik.compare.report.overview import reading
 from pin_metaik.compare.store import ROWS, read_record, read_rows
 from pin_metaik.compare.trial import generator
-from pin_metaik.errors import InvalidSetting, MetaIKError, MissingExtra, UnknownName
+from pin_metaik.errors import CannotWrite, InvalidSetting, MetaIKError, MissingExtra, UnknownName
 from tests.compare.suites import IMPOSSIBLE, JUMPING, METHODS, SMALL, Interrupted, rows
 
 ROOT = Path(__file__).parents[2]
@@ -249,7 +250,7 @@ def test_a_dask_cluster_gives_the_same_rows(whole: Path, tmp_path: Path, schedul
 
 def test_a_cluster_that_does_not_answer_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr("pin_metaik.compare.run.CONNECTING", 0.5)
+    monkeypatch.setattr("pin_metaik.compare.workers.CONNECTING", 0.5)
     for scheduler, complaint in ((None, "--scheduler ADDRESS"), ("tcp://127.0.0.1:9", "no Dask scheduler answers")):
         with pytest.raises(InvalidSetting, match=complaint):
             compare(SMALL, tmp_path / "out", backend="dask", scheduler=scheduler)
@@ -282,14 +283,13 @@ def test_where_no_arm_has_any_of_the_cases_that_is_said_before_the_work(tmp_path
 def test_a_second_process_is_refused_and_a_killed_one_leaves_no_lock(tmp_path: Path) -> None:
     holder = "import sys, time; from pathlib import Path; from pin_metaik.compare.lock import locked\n"
     holder += f"with locked(Path({str(tmp_path)!r}), 'comparison'): print('held', flush=True); time.sleep(60)"
-    running = subprocess.Popen([sys.executable, "-c", holder], env=ENVIRONMENT, stdout=subprocess.PIPE)
-    try:
-        assert running.stdout is not None and running.stdout.readline() == b"held\n"
-        with pytest.raises(InvalidSetting, match=rf"another process \({running.pid}\) works on the comparison"):
-            compare(SMALL, tmp_path)
-    finally:
-        running.kill()
-        running.wait()
+    with subprocess.Popen([sys.executable, "-c", holder], env=ENVIRONMENT, stdout=subprocess.PIPE) as running:
+        try:
+            assert running.stdout is not None and running.stdout.readline() == b"held\n"
+            with pytest.raises(InvalidSetting, match=rf"another process \({running.pid}\) works on the comparison"):
+                compare(SMALL, tmp_path)
+        finally:
+            running.kill()
     outcome = compare(Suite(("ur5",), ("random",), ("lm",), targets=1, budget=50), tmp_path)
     assert outcome.done == 1
     assert not list(tmp_path.glob(".*.lock"))
@@ -346,6 +346,38 @@ def test_folders_from_before_robots_travelled_are_read(whole: Path, tmp_path: Pa
     assert Record.from_json(values) == read_record(whole)
 
 
+@pytest.mark.parametrize(
+    ("file", "change", "says"),
+    [
+        ("suite.json", lambda text: text.replace('"budget"', '"bugdet"'), "unknown key 'bugdet'"),
+        ("suite.json", lambda text: text.replace('"about"', '"around"'), "unknown key 'around'"),
+        ("suite.json", lambda text: text.replace('"rng"', '"absent"'), "rng is missing"),
+        ("suite.json", lambda text: text.replace('"targets": 3', '"targets": "3"'), "targets: expected a whole number"),
+        ("suite.json", lambda text: text[:-9], "is not JSON"),
+        ("suite.json", lambda text: "[]", "is not an object"),
+        ("environment.json", lambda text: text[:-9], "is not JSON"),
+        ("environment.json", lambda text: "{}", "is not a list"),
+        ("environment.json", lambda text: text.replace('"cores"', '"kernels"'), "unknown key 'kernels'"),
+    ],
+)
+def test_what_somebody_spoilt_in_a_folder_is_named(
+    file: str, change: Callable[[str], str], says: str, whole: Path, tmp_path: Path
+) -> None:
+    folder = Path(shutil.copytree(whole, tmp_path / "spoilt"))
+    text = (folder / file).read_text()
+    (folder / file).write_text(change(text))
+    assert (folder / file).read_text() != text
+    for call in (lambda: write_report(folder), lambda: compare(SMALL, folder)):
+        with pytest.raises(InvalidSetting, match=says):
+            call()
+
+
+def test_rows_that_cannot_be_written_are_told_before_the_work(tmp_path: Path) -> None:
+    (tmp_path / ROWS).mkdir()
+    with pytest.raises(CannotWrite, match=ROWS):
+        compare(SMALL, tmp_path)
+
+
 def test_a_trial_that_was_never_asked_for_is_named(whole: Path) -> None:
     with pytest.raises(InvalidSetting, match="targets of this comparison are 0 to 2, got 3"):
         replay(whole, "ur5/path/3/gwo/0")
@@ -378,6 +410,23 @@ class Swallowing:
                 os.kill(os.getpid(), signal.SIGINT)
                 time.sleep(1.0)
         return Answer(x0, False, 1)
+
+
+@pytest.mark.parametrize("later", [0.0, 0.1, 0.3, 1.0])
+def test_ctrl_c_in_a_terminal_ends_all_processes_without_last_words(later: float, tmp_path: Path) -> None:
+    options = ["--targets", "500", "--jobs", "2", "--out", str(tmp_path)]
+    words = ["-m", "pin_metaik", "compare", "--robot", "ur5", "--cases", "singular", "--methods", "gwo,mtde", *options]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "env": ENVIRONMENT}
+    with subprocess.Popen([sys.executable, *words], start_new_session=True, **pipes) as process:
+        while not ((tmp_path / "environment.json").exists() and (tmp_path / ROWS).exists()):
+            time.sleep(0.01)
+        time.sleep(later)
+        os.killpg(process.pid, signal.SIGINT)
+        said, error = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "interrupted: the same command goes on" in said
+    assert "Traceback" not in error
+    assert "arning" not in error
 
 
 def test_a_method_that_swallows_ctrl_c_ends_the_comparison_and_leaves_no_row(tmp_path: Path) -> None:

@@ -253,5 +253,6 @@ def test_the_reference_is_inside_limits_that_replace_the_models() -> None:
     model = mik.load_robot("ur5").model
     chain = mik.Chain(model, "tool0", limits={"elbow_joint": (0.5, 1.0)})
     assert chain.limits.contains(chain.x(chain.reference))
-    wide = mik.Chain(model, "tool0", limits={"elbow_joint": (-9.0, 9.0)}, reference=np.array([0, 0, 8.0, 0, 0, 0]))
+    with pytest.warns(UserWarning, match="beyond"):
+        wide = mik.Chain(model, "tool0", limits={"elbow_joint": (-9.0, 9.0)}, reference=np.array([0, 0, 8.0, 0, 0, 0]))
     assert wide.reference[2] == 8.0

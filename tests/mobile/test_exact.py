@@ -185,6 +185,7 @@ def test_an_empty_world_has_straight_paths():
     assert plan_path(Scene((0, 0), (0, 0))).length == 0
 
 
+@pytest.mark.filterwarnings("ignore:invalid value encountered in linestrings")
 def test_the_exact_test_refuses_what_crosses_a_corner_by_a_hair():
     space = FreeSpace.of(load_scene("one_square"))
     assert space.holds(np.array([(0, 5), (4, 6), (6, 6), (10, 5)]))

@@ -204,6 +204,7 @@ MEANINGLESS = {
 }
 
 
+@pytest.mark.filterwarnings("ignore:.*it is free")
 @pytest.mark.parametrize("what", MEANINGLESS)
 def test_a_tag_that_means_nothing_leaves_its_joint_free_and_is_said(what):
     urdf, message = MEANINGLESS[what]

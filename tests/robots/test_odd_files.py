@@ -60,6 +60,8 @@ READ: dict[str, tuple[str | bytes, str]] = {
     "Windows' line ends": (PLAIN.replace("><", ">\r\n<"), PLAIN),
     "a byte order mark": (PLAIN.encode("utf-8-sig"), PLAIN),
     "UTF-16": (PLAIN.encode("utf-16"), PLAIN),
+    "UTF-32": (PLAIN.encode("utf-32"), PLAIN),
+    "zero bytes at the end": (f"{PLAIN}\n\0\0", PLAIN),
     "UTF-16 declared, without a mark": (f'<?xml version="1.0" encoding="UTF-16"?>{PLAIN}'.encode("utf-16-le"), PLAIN),
     "UTF-16 declared in a file of UTF-8": (f'<?xml version="1.0" encoding="UTF-16"?>{PLAIN}', PLAIN),
     "Latin-1, declared": (
@@ -155,6 +157,7 @@ SAID: dict[str, tuple[str, str, str]] = {
 REFUSED: dict[str, tuple[str | bytes, str]] = {
     "nothing": ("", "it has no XML element <robot>"),
     "a picture": (b"\x89PNG\r\n\x1a\n\x00\x00", "it is not text"),
+    "a pointer of Git LFS": ("version https://git-lfs.github.com/spec/v1\nsize 9", "pointer of Git LFS, not the file"),
     "xacro": (arm(root='<xacro:arm name="left"/>'), "is xacro that was not expanded: it has <xacro:arm>"),
     "xacro in a number": (arm(joint=LIMIT.replace('"2"', '"${pi/2}"')), r'it has upper="\$\{pi/2\}"; run xacro'),
     "SDF": ("<sdf version='1.7'><model name='m'/></sdf>", "is SDF, which"),
@@ -227,6 +230,7 @@ def test_a_file_that_is_odd_is_read_without_a_word_and_whole(what, load, capfd):
     assert capfd.readouterr() == ("", "")
 
 
+@pytest.mark.filterwarnings("ignore:.*which is not read")  # both limits
 @pytest.mark.parametrize("what", SAID)
 def test_what_is_mended_guessed_or_not_held_is_one_warning_that_names_it(what, load, capfd):
     content, plain, message = SAID[what]

@@ -112,6 +112,7 @@ limits = [{lower}, {upper}]
 """
 
 
+@pytest.mark.filterwarnings("ignore:.*probably millimetres")  # of the other links, too
 @pytest.mark.parametrize(
     ("numbers", "message"),
     [

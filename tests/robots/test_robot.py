@@ -294,6 +294,12 @@ def test_a_robot_may_come_as_mjcf(write, tmp_path):
         load_robot(MJCF.replace("</mujoco>", "<equality><joint joint1='j2' joint2='j1'/></equality></mujoco>"))
     with pytest.raises(InvalidModel, match=r"not MJCF that can be read: No such node \(body\)"):
         load_robot("<mujoco><worldbody/></mujoco>")
+    with pytest.raises(InvalidModel) as caught:
+        load_robot("<mujoco/>")
+    told = "the MJCF text is not MJCF that can be read: MJCF parser: no body found in parsed tree."
+    assert str(caught.value) == told
+    with pytest.raises(InvalidModel, match="the MJCF text is not MJCF that can be read: the MJCF text"):
+        load_robot("<mujoco>")
 
 
 def mesh(filename: str) -> str:

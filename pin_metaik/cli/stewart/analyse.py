@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -24,6 +23,7 @@ from pin_metaik.cli.stewart.common import (
     pose_of,
     show_lines,
 )
+from pin_metaik.cli.versions import print_json
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.interrupts import kept
 from pin_metaik.stewart import Verdict
@@ -77,7 +77,7 @@ def analyse(
             report["at_pose"] = pose_values(mechanism, T)
         if way is not None:
             report["along_way"] = way_values(mechanism, way)
-        print(json.dumps(report, allow_nan=False))
+        print_json(report)
     else:
         show_lines(mechanism.name, describe(mechanism))
         if T is not None:

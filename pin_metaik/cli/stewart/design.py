@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -25,6 +24,7 @@ from pin_metaik.cli.stewart.common import (
     measured,
     show_lines,
 )
+from pin_metaik.cli.versions import print_json
 from pin_metaik.interrupts import kept
 from pin_metaik.optimize import ALGORITHMS
 from pin_metaik.stewart.report import assess, describe, outcome, values
@@ -92,7 +92,7 @@ def design(
         report = {"success": found.success, "ended": found.search.status.value, "score": score}
         report["workspace"] = None if workspace is None else values(found.mechanism, workspace)
         report["mechanism"] = stewart.to_toml(found.mechanism) if found.success else None
-        print(json.dumps(report, allow_nan=False))
+        print_json(report)
     else:
         show_lines("design", outcome(found))
         if workspace is not None:

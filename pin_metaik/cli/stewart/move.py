@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from math import radians
 from pathlib import Path
 from typing import Annotated, Any
@@ -11,6 +10,7 @@ import typer
 
 from pin_metaik import stewart
 from pin_metaik.cli.stewart.common import File, Json, Six, can_write, pose_of, show_lines
+from pin_metaik.cli.versions import print_json
 from pin_metaik.errors import InvalidConfiguration
 from pin_metaik.stewart.report import Lines, along, in_unit, pose_words, way_values
 
@@ -51,7 +51,7 @@ def forward(
         lines += [("largest error", in_unit(mechanism, near.errors))]
         report = {"poses": poses.tolist(), "status": near.status.name.lower(), "error": float(near.errors[0])}
     if as_json:
-        print(json.dumps({"name": mechanism.name, "lengths": d, **report}, allow_nan=False))
+        print_json({"name": mechanism.name, "lengths": d, **report})
     else:
         lines += [("pose", pose_words(mechanism, pose)) for pose in poses]
         show_lines(f"{mechanism.name} with legs of {in_unit(mechanism, d)}", lines)
@@ -81,7 +81,7 @@ def follow(
         stewart.save_picture(stewart.draw_motion(motion, mechanism), picture)
     values = way_values(mechanism, trajectory)
     if as_json:
-        print(json.dumps({"name": mechanism.name, **values}, allow_nan=False))
+        print_json({"name": mechanism.name, **values})
     else:
         show_lines(f"{mechanism.name} along {way}", along(mechanism, trajectory))
     raise typer.Exit(0 if values["reached"] and not values["too_fast"] and not values["singular"] else 1)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -15,6 +14,7 @@ from rich.table import Table
 from pin_metaik import stewart
 from pin_metaik.cli.codes import INTERRUPTED
 from pin_metaik.cli.stewart.common import File, Json
+from pin_metaik.cli.versions import print_json
 from pin_metaik.output import writable
 
 
@@ -47,7 +47,7 @@ def types(
                 stewart.save_mechanism(one.designed.mechanism, output / f"{one.type}.toml")
     rows = [_row(one) for one in found]
     if as_json:
-        print(json.dumps(rows, allow_nan=False))
+        print_json({"types": rows})
     else:
         _show(rows)
     if any(one.designed.interrupted for one in found):

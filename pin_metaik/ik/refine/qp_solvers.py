@@ -64,13 +64,17 @@ def _osqp(n: int, m: int, tolerance: float) -> RowQP:
     rows = sparse.vstack([sparse.eye(n), sparse.csc_matrix(np.ones((m, n)))], format="csc") if m else sparse.eye(n)
     full = sparse.csc_matrix(np.triu(np.ones((n, n))))
     settings = {"eps_abs": tolerance, "eps_rel": tolerance, "warm_starting": False, "verbose": False}
-    solver: Any = import_module("osqp").OSQP()
+    osqp: Any = import_module("osqp")
+    solver, interrupted = osqp.OSQP(), osqp.SolverStatus.OSQP_SIGINT
     solver.setup(full, np.zeros(n), rows.tocsc(), np.full(n + m, -1.0), np.ones(n + m), **settings)
 
     def solve(P: Array, q: Array, lower: Array, upper: Array, A: Array) -> Array:
         given = {"Ax": np.vstack([np.ones(n), A]).T.ravel()} if m else {}  # by column: the 1 of the box, then the rows
         solver.update(Px=P[lower_half], q=q, l=lower, u=upper, **given)  # P's rows are the columns OSQP wants
-        return np.array(solver.solve(raise_error=False).x)
+        found = solver.solve(raise_error=False)
+        if found.info.status_val == interrupted:  # OSQP listens to Ctrl-C itself, and nobody else hears it then
+            raise KeyboardInterrupt
+        return np.array(found.x)
 
     return solve
 

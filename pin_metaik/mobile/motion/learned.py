@@ -6,7 +6,6 @@ paper planned with it, and because it shows what a network's error of a few mill
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -23,6 +22,7 @@ from pin_metaik.mobile.motion.turn import lead_time
 from pin_metaik.mobile.motion.turn_data import coarse_grid, judging_points
 from pin_metaik.mobile.motion.turn_errors import TurnErrors, turn_errors
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
+from pin_metaik.said import warn
 
 DesignName = Literal["paper", "log"]
 
@@ -103,12 +103,11 @@ class LearnedTurn:
         moving = v > 0
         asked = ~self.knows(v, theta) & moving
         if asked.any():
-            warnings.warn(
+            warn(
                 f"{asked.sum()} of {asked.size} turns lie outside the training range of {self.speeds[0]:.4g} to "
                 f"{self.speeds[1]:.4g} m/s and {np.degrees(self.angles[0]):.4g} to {np.degrees(self.angles[1]):.4g} "
                 "degrees: the error there is unknown",
                 OutsideTraining,
-                stacklevel=2,
             )
         lengths = np.zeros(v.shape)
         lengths[moving] = self._predict(v[moving], theta[moving])
@@ -134,11 +133,10 @@ class LearnedTurn:
         known = self.knows(self.speeds[1], theta)
         if not known.all():
             corners = ", ".join(f"{i + 1} ({np.degrees(theta[i]):.3g} degrees)" for i in np.flatnonzero(~known))
-            warnings.warn(
+            warn(
                 f"corner {corners} lies outside the training range of {np.degrees(self.angles[0]):.4g} to "
                 f"{np.degrees(self.angles[1]):.4g} degrees: the closed form is used there",
                 OutsideTraining,
-                stacklevel=2,
             )
         return LearnedCorners(self, theta, known, lead_time(theta, self.vehicle))
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from numbers import Real
 from pathlib import Path
@@ -17,6 +16,7 @@ from pin_metaik.arguments import checked, shown
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.mobile.errors import LooksLikeDegrees
 from pin_metaik.mobile.files import read_json, read_text
+from pin_metaik.said import warn
 
 SIMPLE = ("Polygon", "LineString", "Point")
 COLLECTED = tuple(f"Multi{kind}" for kind in SIMPLE)
@@ -244,9 +244,8 @@ def _say_if_degrees(geometries: list[BaseGeometry], place: str) -> None:
         return
     x, y = max(abs(x_min), abs(x_max)), max(abs(y_min), abs(y_max))
     if x <= 180 and y <= 90 and max(x, y) > FAR * extent:
-        warnings.warn(
+        warn(
             f"the coordinates of {place} look like longitudes and latitudes, as GeoJSON's are: lengths are then in "
             "degrees; project them to metres first",
             LooksLikeDegrees,
-            stacklevel=5,  # _found, read_obstacles, its check, who called
         )

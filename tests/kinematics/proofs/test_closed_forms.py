@@ -72,6 +72,7 @@ def test_an_arm_is_no_farther_from_its_closed_form_than_is_added_to_the_toleranc
         assert np.linalg.norm(off.translation) <= near and np.linalg.norm(pin.log3(off.rotation)) <= aligned + 1e-12
 
 
+@pytest.mark.filterwarnings("ignore:.*own limits")
 def test_why_names_the_joint_its_limit_and_by_how_much_it_is_missed() -> None:
     chain = chain_of("rv7fl")
     x = 0.5 * (chain.limits.lower + chain.limits.upper)

@@ -1,0 +1,92 @@
+"""Work in several processes, here or on a cluster: what each unit comes to, as soon as it is done."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import warnings
+from collections.abc import Iterator
+from importlib.util import find_spec
+from multiprocessing import resource_tracker
+from typing import Any, Literal, TypeAlias
+
+from pin_metaik.compare.trial import Trial
+from pin_metaik.compare.unit import Unit
+from pin_metaik.errors import InvalidSetting, MissingExtra
+from pin_metaik.interrupts import Pressed, deaf_children
+
+Backend: TypeAlias = Literal["loky", "dask"]
+
+CONNECTING = 10.0  # s
+LOKYS_THREAD = "ExecutorManagerThread"
+
+
+def need_joblib() -> None:
+    """Make sure that tasks can be handed to workers.
+
+    Raises:
+        MissingExtra: joblib is not installed.
+    """
+    if find_spec("joblib") is None:
+        raise MissingExtra("comparing methods", "compare")
+
+
+def worked(units: list[Unit], jobs: int, backend: Backend, scheduler: str | None) -> Iterator[list[Trial]]:
+    """The rows of units, in the order in which they are finished."""
+    with contextlib.ExitStack() as stack:
+        chosen: dict[str, Any] = {"backend": backend, "n_jobs": jobs}
+        if backend == "dask":
+            chosen |= {"client": stack.enter_context(_cluster(scheduler)), "n_jobs": -1}
+        stack.enter_context(_no_last_words())
+        with Pressed(held=True) as pressed:  # or it might come in a callback of weak references, which swallows it
+            rows = _begun(units, chosen)
+        try:
+            pressed.check()
+            for trials in rows:  # noqa: UP028  # `yield from` would close them before the lines below
+                yield trials
+        finally:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # joblib's, of tasks that an interrupt leaves undone
+                rows.close()
+
+
+def _begun(units: list[Unit], chosen: dict[str, Any]) -> Any:
+    """The generator of rows, its processes begun; they do not hear Ctrl-C."""
+    from joblib import Parallel, delayed, parallel_config
+    from joblib.externals.loky.backend import resource_tracker as lokys_tracker
+
+    for tracker in (resource_tracker, lokys_tracker):  # when that of Python begins, it unblocks signals
+        tracker.ensure_running()
+    with parallel_config(**chosen), deaf_children():
+        parallel = Parallel(return_as="generator_unordered", pre_dispatch="3*n_jobs")
+        return parallel(delayed(Unit.work)(unit) for unit in units)
+
+
+@contextlib.contextmanager
+def _no_last_words() -> Iterator[None]:
+    """What loky's own thread stumbles over when its work is taken away (a KeyError of its queue) is not printed."""
+    before = threading.excepthook
+
+    def hook(stumble: threading.ExceptHookArgs) -> None:
+        if stumble.thread is None or stumble.thread.name != LOKYS_THREAD:
+            before(stumble)
+
+    threading.excepthook = hook
+    try:
+        yield
+    finally:
+        threading.excepthook = before
+
+
+def _cluster(scheduler: str | None) -> Any:
+    """A client of a Dask cluster, to be closed."""
+    if find_spec("distributed") is None:
+        raise MissingExtra("a Dask cluster", "cluster")
+    from distributed import Client
+
+    if scheduler is None:
+        raise InvalidSetting("name the Dask cluster: --scheduler ADDRESS, e.g. tcp://localhost:8786")
+    try:
+        return Client(scheduler, timeout=CONNECTING)  # type: ignore[no-untyped-call]  # it carries no types
+    except (OSError, ValueError) as error:
+        raise InvalidSetting(f"no Dask scheduler answers at {scheduler}: {error}") from None
