@@ -13,7 +13,7 @@ from pin_metaik.stewart import (
     pose_at,
     standard_geometry,
 )
-from pin_metaik.stewart.conditioning import NORMS
+from pin_metaik.stewart.kinematics.conditioning import NORMS
 from tests.stewart.cases import cube, reference, similar_hexagons, some_poses, stroke
 
 PRINTED = 1e-5

@@ -23,8 +23,8 @@ from pin_metaik.stewart import (
     standard_geometry,
     to_toml,
 )
-from pin_metaik.stewart.library import FOLDER
-from pin_metaik.stewart.numbers import ANGLES, LENGTHS
+from pin_metaik.stewart.files.library import FOLDER
+from pin_metaik.stewart.mechanism.units import ANGLES, LENGTHS
 from tests.stewart.cases import cube, reference, stroke
 
 FILE = """

@@ -22,8 +22,8 @@ from pin_metaik.stewart import (
     standard_geometry,
     survey,
 )
-from pin_metaik.stewart.cells import room
-from pin_metaik.stewart.surveying import LEAST
+from pin_metaik.stewart.workspace.cells import room
+from pin_metaik.stewart.workspace.surveying import LEAST
 from tests.stewart.cases import reference
 
 MM3 = 1e9

@@ -4,7 +4,7 @@ from numpy.testing import assert_allclose
 
 from pin_metaik.errors import InvalidBounds
 from pin_metaik.stewart import LegLimits, Ranges
-from pin_metaik.stewart.ranges import Variables
+from pin_metaik.stewart.mechanism.ranges import Variables
 from tests.stewart.cases import cube
 
 GEOMETRY, LIMITS = cube(0.1), LegLimits(0.1, 0.15)

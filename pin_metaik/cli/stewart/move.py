@@ -12,7 +12,7 @@ import typer
 from pin_metaik import stewart
 from pin_metaik.cli.stewart.common import File, Json, Six, can_write, pose_of, show_lines
 from pin_metaik.errors import InvalidConfiguration
-from pin_metaik.stewart.report import Lines, along, in_unit, pose_words, way_values
+from pin_metaik.stewart.show.report import Lines, along, in_unit, pose_words, way_values
 
 
 def forward(

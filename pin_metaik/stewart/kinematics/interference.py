@@ -1,0 +1,27 @@
+"""Distances between legs: how near their axes come to each other."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pin_metaik.arguments import checked
+from pin_metaik.optimize.space import Array
+from pin_metaik.stewart.kernels.loading import load_kernels
+from pin_metaik.stewart.platform.geometry import Geometry
+from pin_metaik.stewart.platform.poses import PoseLike, as_poses, is_many
+
+
+@checked
+def leg_distances(geometry: Geometry, poses: PoseLike) -> Array:
+    """Distance in m between the axes of each pair of legs in ``geometry.pairs``: (k, p), or (p,) for a single pose.
+
+    Legs that share a joint touch there and are no pair. Two legs of diameter D are clear of each other at more than D.
+
+    Raises:
+        InvalidTarget: Not poses.
+    """
+    T = as_poses(poses)
+    b, m, pairs = geometry.arrays
+    distances = np.empty((len(T), len(pairs)))
+    load_kernels().distances(b, m, pairs, T, distances)
+    return distances if is_many(poses) else distances[0]

@@ -1,0 +1,296 @@
+"""Pictures: a mechanism at a pose, its workspace coloured by dexterity, and the history of a design."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pin_metaik.arguments import checked, instance
+from pin_metaik.errors import InvalidSetting, MissingExtra
+from pin_metaik.optimize.space import Array
+from pin_metaik.output import writable
+from pin_metaik.stewart.kinematics.inverse import leg_vectors
+from pin_metaik.stewart.kinematics.trajectory import Motion
+from pin_metaik.stewart.mechanism.mechanism import Mechanism
+from pin_metaik.stewart.platform.geometry import Geometry, on_circle
+from pin_metaik.stewart.platform.poses import PoseLike, one_pose, pose_at
+from pin_metaik.stewart.show.body import body_of, draw_body, polygons
+from pin_metaik.stewart.synthesis.design import Designed
+from pin_metaik.stewart.workspace.workspace import Workspace
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FORMATS = (".png", ".svg", ".pdf")
+STEEL, PLATE, ROD = "#4a4f57", "#e07b1a", "#2f6fb0"
+TAG = {"boxstyle": "circle,pad=0.15", "facecolor": "white", "edgecolor": STEEL, "linewidth": 0.6}
+FLATTEST = 0.2  # of the longest side: what is drawn flatter than that has no room for its numbers
+VIEW = {"elev": 18.0, "azim": -60.0}
+
+
+def need_plots() -> None:
+    """Make sure that pictures can be drawn, before anything is worked out for one.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+    """
+    try:
+        import matplotlib.figure  # noqa: F401  # asked for, not used
+    except ImportError:
+        raise MissingExtra("a picture", "plots") from None
+
+
+@checked
+def picture_file(path: str | Path) -> Path:
+    """The path of a picture that can be written, before anything is worked out for it.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+        InvalidSetting: Its ending is none of a picture.
+        CannotWrite: It cannot be written.
+    """
+    need_plots()
+    if Path(path).suffix.lower() not in FORMATS:
+        raise InvalidSetting(f"a picture ends in {', '.join(FORMATS)}, got {str(path)!r}")
+    return writable(path)
+
+
+@checked
+def draw(mechanism: Mechanism, workspace: Workspace | None = None, pose: PoseLike | None = None) -> Figure:
+    """A picture of a mechanism, and beside it of its workspace; see ``draw_into``.
+
+    Raises:
+        InvalidTarget: Not a pose.
+        MissingExtra: matplotlib is not installed.
+    """
+    figure = _figure((11.0, 4.8) if workspace is not None else (6.8, 5.6))
+    draw_into(figure, mechanism, workspace, pose)
+    return figure
+
+
+@checked
+def draw_into(
+    figure: Figure, mechanism: Mechanism, workspace: Workspace | None = None, pose: PoseLike | None = None
+) -> None:
+    """Draw into an empty figure.
+
+    Args:
+        figure: Where to draw.
+        mechanism: What to draw.
+        workspace: Its workspace, if that is to be drawn too: its cells, coloured by nu.
+        pose: Where the platform is; default: in the middle of the workspace, or level at half stroke.
+
+    Raises:
+        InvalidTarget: Not a pose.
+    """
+    _need_figure(figure)
+    unit = mechanism.unit
+    scale = 1.0 / mechanism.metres
+    T = one_pose(_middle(mechanism, workspace) if pose is None else pose)
+    axes = figure.add_subplot(1, 2 if workspace is not None else 1, 1, projection="3d")
+    _mechanism(axes, mechanism, T, scale)
+    axes.set_title(f"{mechanism.name} ({mechanism.geometry.type})", fontsize=11)
+    _dress(axes, tuple(f"{name} ({unit})" for name in "xyz"))
+    if workspace is not None:
+        axes = figure.add_subplot(1, 2, 2, projection="3d")
+        body = body_of(workspace, scale, unit)
+        draw_body(figure, axes, body)
+        gdi = "no GDI: singular" if workspace.gdi is None else f"GDI {workspace.gdi:.3f}"
+        axes.set_title(f"{body.title}, {gdi}", fontsize=11)
+        _dress(axes, body.labels)
+
+
+@checked
+def draw_above(mechanism: Mechanism, pose: PoseLike | None = None) -> Figure:
+    """A mechanism seen from above: where the joints of both sides are, and the legs between them.
+
+    Args:
+        mechanism: What to draw.
+        pose: Where the platform is; default: level over the base at half stroke.
+
+    Raises:
+        InvalidTarget: Not a pose.
+        MissingExtra: matplotlib is not installed.
+    """
+    T = one_pose(_middle(mechanism, None) if pose is None else pose)
+    geometry, scale = mechanism.geometry, 1.0 / mechanism.metres
+    figure = _figure((6.4, 6.0))
+    axes: Any = figure.add_subplot(aspect="equal")
+    moved = T[:3, 3] + geometry.platform_joints @ T[:3, :3].T
+    for i, (b, v) in enumerate(zip(geometry.b, leg_vectors(geometry, T[None])[0], strict=True), start=1):
+        axes.plot(*(scale * np.array([b, b + v])[:, :2]).T, color=ROD, lw=1.6)
+        axes.text(*(scale * (b + 0.5 * v)[:2]), f"{i}", fontsize=8, color=STEEL, ha="center", va="center", bbox=TAG)
+    base_ring, moving_ring = _rings(geometry)
+    aside = 0.07 * (geometry.base_radius + geometry.platform_radius)
+    sides = ((geometry.base_joints, base_ring, "B", STEEL), (moved, T[:3, 3] + moving_ring @ T[:3, :3].T, "M", PLATE))
+    for joints, ring, letter, colour in sides:
+        axes.plot(*(scale * ring[:, :2]).T, color=colour, lw=1, alpha=0.6)
+        axes.scatter(*(scale * joints[:, :2]).T, color=colour, s=36, zorder=3)
+        middle = joints.mean(axis=0)
+        for k, joint in enumerate(joints, start=1):
+            outward = joint - middle
+            place = scale * (joint + aside * outward / max(float(np.linalg.norm(outward)), 1e-12))[:2]
+            label = axes.text(*place, f"{letter}{k}", color=colour, fontsize=10, fontweight="bold", zorder=4)
+            label.set(ha="center", va="center", path_effects=_halo())
+    axes.set_xlabel(f"x ({mechanism.unit})")
+    axes.set_ylabel(f"y ({mechanism.unit})")
+    axes.set_title(f"{mechanism.name} ({geometry.type}) from above", fontsize=11)
+    axes.margins(0.12)
+    axes.grid(alpha=0.3)
+    return figure
+
+
+@checked
+def draw_motion(motion: Motion, mechanism: Mechanism) -> Figure:
+    """What the legs do along a trajectory: their lengths and rates over time with their limits, and dexterity.
+
+    Args:
+        motion: What ``follow`` found.
+        mechanism: Whose legs they are, for its limits and its unit of length.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+    """
+    figure = _figure((7.2, 7.2))
+    panels = figure.subplots(3, sharex=True)
+    times, limits, scale = motion.trajectory.times, mechanism.limits, 1.0 / mechanism.metres
+    curves = ((scale * motion.lengths, "length", mechanism.unit), (scale * motion.rates, "rate", f"{mechanism.unit}/s"))
+    for axes, (values, what, unit) in zip(panels, curves, strict=False):
+        for i, column in enumerate(values.T, start=1):
+            axes.plot(times, column, lw=1.4, label=f"leg {i}")
+        axes.set_ylabel(f"{what} of legs ({unit})")
+    speeds = () if limits.speed is None else (-limits.speed, limits.speed)
+    for axes, ends in zip(panels, ((limits.shortest, limits.longest), speeds), strict=False):
+        for end in ends:
+            axes.axhline(scale * end, color=STEEL, ls="--", lw=1)
+    panels[2].plot(times, motion.nu, color=PLATE)
+    panels[2].set_ylabel("dexterity nu")
+    panels[2].set_xlabel("time (s)")
+    panels[2].set_ylim(0.0, 1.0)
+    bad = ~motion.reached
+    for axes in panels:
+        axes.grid(alpha=0.3)
+        axes.fill_between(times, 0, 1, where=bad, transform=axes.get_xaxis_transform(), color="#d0302020", step="mid")
+    panels[0].legend(fontsize=8, ncols=6, loc="center")
+    shaded = "; shaded: beyond a limit" if bad.any() else ""
+    panels[0].set_title(f"{mechanism.name}: legs along the way (dashed: limits{shaded})", fontsize=11)
+    return figure
+
+
+@checked
+def draw_history(designed: Designed) -> Figure:
+    """Best fitness over designs looked at.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+    """
+    figure = _figure((6.0, 3.6))
+    axes = figure.add_subplot()
+    history = designed.history
+    feasible = history[:, 1] >= 0.0
+    axes.plot(*history[feasible].T, color=ROD)
+    axes.set_xlabel("designs looked at")
+    axes.set_ylabel("best fitness")
+    axes.set_title(designed.mechanism.name, fontsize=11)
+    axes.grid(alpha=0.3)
+    return figure
+
+
+@checked
+def save_picture(figure: Figure, path: str | Path) -> Path:
+    """Write a figure to a file; the ending says the format (.png, .svg, .pdf).
+
+    Raises:
+        InvalidSetting: Its ending is none of a picture.
+        CannotWrite: It cannot be written.
+    """
+    _need_figure(figure)
+    path = picture_file(path)
+    figure.savefig(path, dpi=130)
+    return path
+
+
+def _need_figure(figure: object) -> None:
+    """Raise InvalidSetting for what is no figure of matplotlib's; without matplotlib there is none."""
+    need_plots()
+    from matplotlib.figure import Figure
+
+    instance(Figure, figure=figure)
+
+
+def _figure(size: tuple[float, float]) -> Figure:
+    need_plots()
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=size, layout="constrained")
+
+
+def _middle(mechanism: Mechanism, workspace: Workspace | None) -> Array:
+    if workspace is not None:
+        return pose_at(np.median(workspace.positions, axis=0))
+    limits, offset = mechanism.limits, mechanism.geometry.m - mechanism.geometry.b
+    square = (0.5 * (limits.shortest + limits.longest)) ** 2 - (offset[:, :2] ** 2).sum(axis=1).mean()
+    return pose_at((0.0, 0.0, np.sqrt(max(square, limits.shortest**2 / 4)) - offset[:, 2].mean()))
+
+
+def _mechanism(axes: Any, mechanism: Mechanism, T: Array, scale: float) -> None:
+    """Plates as polygons of their joints on their circles, legs as cylinder and rod, joints as dots."""
+    geometry = mechanism.geometry
+    R, P = T[:3, :3], T[:3, 3]
+    platform_joints = P + geometry.platform_joints @ R.T
+    rings = _rings(geometry)
+    for ring, joints, colour, at in zip(
+        rings, (geometry.base_joints, platform_joints), (STEEL, PLATE), (np.eye(4), T), strict=True
+    ):
+        axes.plot(*(scale * (at[:3, 3] + ring @ at[:3, :3].T)).T, color=colour, lw=1, alpha=0.6)
+        _plate(axes, scale * joints, colour)
+    for i, (b, v) in enumerate(zip(geometry.b, leg_vectors(geometry, T)[0], strict=True), start=1):
+        share = min(1.0, 0.9 * mechanism.limits.shortest / max(float(np.linalg.norm(v)), 1e-12))
+        axes.plot(*(scale * np.array([b, b + share * v])).T, color=STEEL, lw=4, solid_capstyle="round")
+        axes.plot(*(scale * np.array([b + share * v, b + v])).T, color=ROD, lw=2.2, solid_capstyle="round")
+        axes.text(
+            *(scale * (b + 0.45 * v)), f"{i}", fontsize=8, color=STEEL, ha="center", va="center", bbox=TAG, zorder=20
+        )
+    aside = 0.09 * (geometry.base_radius + geometry.platform_radius)
+    for joints, name, colour in ((geometry.base_joints, "B", STEEL), (platform_joints, "M", PLATE)):
+        axes.scatter(*(scale * joints).T, color=colour, s=26, depthshade=False)
+        for k, joint in enumerate(joints, start=1):
+            outward = joint - joints.mean(axis=0)
+            away = aside * outward / max(float(np.linalg.norm(outward)), 1e-12)
+            place = joint + away + [0.0, 0.0, 0.6 * aside if name == "M" else -0.6 * aside]
+            label = axes.text(*(scale * place), f"{name}{k}", fontsize=9, color=colour, fontweight="bold", zorder=30)
+            label.set(ha="center", va="center", path_effects=_halo())
+
+
+def _rings(geometry: Geometry) -> tuple[Array, Array]:
+    """Points (k, 3) of the circles of both sides in their frames; none for joints anywhere."""
+    round_about = np.linspace(0.0, 2 * np.pi, 73)
+    base = on_circle(geometry.base_radius, round_about)
+    moving = on_circle(geometry.platform_radius, round_about) + geometry.platform_centre
+    return base[: 0 if geometry.base else None], moving[: 0 if geometry.platform else None]
+
+
+def _halo() -> list[Any]:
+    """A white edge round letters, so that what is behind them does not hide them."""
+    effects = import_module("matplotlib.patheffects")
+    return [effects.withStroke(linewidth=2.5, foreground="white")]
+
+
+def _plate(axes: Any, corners: Array, colour: str) -> None:
+    """A plate through its joints, taken round their middle."""
+    out = corners - corners.mean(axis=0)
+    corners = corners[np.argsort(np.arctan2(out[:, 1], out[:, 0]))]
+    axes.add_collection3d(polygons([corners], facecolor=colour, alpha=0.22, edgecolor=colour))
+
+
+def _dress(axes: Any, labels: tuple[str, ...]) -> None:
+    extents = np.array([np.ptp(getattr(axes, f"get_{name}lim")()) for name in "xyz"])
+    for name, label, extent in zip("xyz", labels, extents, strict=True):
+        getattr(axes, f"set_{name}label")(label, fontsize=9)
+        axes.locator_params(axis=name, nbins=5 if extent > 0.4 * extents.max() else 3)
+    axes.tick_params(labelsize=8)
+    axes.set_box_aspect(np.maximum(extents, FLATTEST * extents.max()), zoom=0.9)
+    axes.view_init(**VIEW)

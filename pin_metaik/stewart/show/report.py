@@ -1,0 +1,226 @@
+"""What there is to say about a mechanism, as labelled lines in its own units and as plain values."""
+
+from __future__ import annotations
+
+from math import degrees, pi
+from typing import Any, TypeAlias
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import ArrayLike
+
+from pin_metaik.stewart.kinematics.conditioning import conditioning
+from pin_metaik.stewart.kinematics.interference import leg_distances
+from pin_metaik.stewart.kinematics.inverse import leg_lengths
+from pin_metaik.stewart.kinematics.jacobian import jacobian
+from pin_metaik.stewart.kinematics.trajectory import Trajectory, follow, judge_poses
+from pin_metaik.stewart.mechanism.mechanism import Mechanism
+from pin_metaik.stewart.platform.geometry import MOST_LEGS
+from pin_metaik.stewart.platform.limits import PoseState
+from pin_metaik.stewart.platform.poses import PoseLike, as_poses, one_pose
+from pin_metaik.stewart.synthesis.design import Designed
+from pin_metaik.stewart.workspace.singularity import crossings, singularities
+from pin_metaik.stewart.workspace.surveying import LEAST
+from pin_metaik.stewart.workspace.workspace import Workspace
+
+Lines: TypeAlias = list[tuple[str, str]]
+
+
+def in_unit(mechanism: Mechanism, lengths: ArrayLike) -> str:
+    """Lengths given in m, in the mechanism's unit."""
+    return f"{', '.join(f'{value / mechanism.metres:.6g}' for value in np.ravel(lengths))} {mechanism.unit}"
+
+
+def describe(mechanism: Mechanism) -> Lines:
+    """Its dimensions and limits."""
+    geometry, limits = mechanism.geometry, mechanism.limits
+    lines = [("type", str(geometry))]
+    for side, letter in (("base", "B"), ("platform", "M")):
+        if (joints := getattr(geometry, side)) is not None:
+            places = (in_unit(mechanism, joint) for joint in joints)
+            lines += [(side, f"{letter}{k} at {place}") for k, place in enumerate(places, start=1)]
+            continue
+        shown = ", ".join(f"{degrees(angle):.6g}" for angle in getattr(geometry, f"{side}_angles"))
+        lines.append((side, f"radius {in_unit(mechanism, getattr(geometry, f'{side}_radius'))}, joints at {shown} deg"))
+    if any(geometry.reference):
+        lines.append(("reference", f"{in_unit(mechanism, geometry.reference)} from the centre of the platform"))
+    lines.append(("joint gap", in_unit(mechanism, geometry.joint_gap)))
+    lines.append(("legs", in_unit(mechanism, (limits.shortest, limits.longest))))
+    for name, angle in (("base joints", limits.base_angle), ("platform joints", limits.platform_angle)):
+        if angle < pi:
+            lines.append((name, f"up to {degrees(angle):.6g} deg"))
+    if limits.distance > 0.0:
+        lines.append(("legs apart", f"at least {in_unit(mechanism, limits.distance)}"))
+    if limits.dead_length is not None:
+        lines.append(("dead length", in_unit(mechanism, limits.dead_length)))
+    if limits.speed is not None:
+        lines.append(("speed of legs", f"up to {in_unit(mechanism, limits.speed)}/s"))
+    return lines
+
+
+def notes(mechanism: Mechanism, workspace: Workspace | None = None) -> list[str]:
+    """What a reader of the figures should know before believing them."""
+    geometry, limits = mechanism.geometry, mechanism.limits
+    said = []
+    if geometry.n < MOST_LEGS:
+        free = MOST_LEGS - geometry.n
+        said.append(
+            f"{geometry.n} legs between universal and spherical joints leave the platform {free} "
+            f"freedom{'s' if free > 1 else ''}: they do not hold it, and dexterity says only how they act on it"
+        )
+    if limits.stroke > limits.shortest and limits.dead_length is None:
+        said.append(
+            f"a stroke of {in_unit(mechanism, limits.stroke)} does not fit into a leg that is "
+            f"{in_unit(mechanism, limits.shortest)} long when retracted, unless it telescopes in several stages"
+        )
+    if workspace is None:
+        return said
+    if not workspace.complete:
+        said.append("interrupted: the figures are about the poses seen until then")
+    if max(workspace.cells.shape[:3]) > 1 and workspace.cells_reached < LEAST:
+        said.append(f"only {workspace.cells_reached} cells carry the figures: they are rough; use a finer grid")
+    return said
+
+
+def assess(mechanism: Mechanism, workspace: Workspace) -> Lines:
+    """Its workspace: volume, dexterity, singularities, and what limits it."""
+    found = singularities(workspace)
+    lines = [("verdict", str(workspace.verdict))]
+    lines += [("PARTIAL" if not workspace.complete else "note", text) for text in notes(mechanism, workspace)]
+    cells = workspace.cells
+    if workspace.at_one_position:
+        share = f"{100 * workspace.reached.mean():.4g} % of {len(cells.rpy)}"
+        lines.append(("orientations", f"{share} at {in_unit(mechanism, workspace.positions[0])} are reached"))
+    else:
+        lines.append(("volume", f"{1e6 * workspace.volume:.5g} cm3, of {workspace.cells_reached} cells"))
+        if len(cells.rpy) > 1:
+            lines.append(("in every orientation", f"{1e6 * workspace.volume_of_all:.5g} cm3"))
+    gdi = "none: every pose reached is singular" if workspace.gdi is None else f"{workspace.gdi:.4f}"
+    norm = f"{mechanism.dexterity.norm} norm, L = {in_unit(mechanism, workspace.length)}"
+    lines.append(("GDI", f"{gdi}, the mean dexterity nu = 1 / condition number ({norm})"))
+    lines.append(("lowest nu", f"{found.nu:.4g} at {in_unit(mechanism, found.nearest[:3, 3])}"))
+    if len(found.poses) or len(found.crossings):
+        lines.append(("singular poses", f"{len(found.poses)}, left out of the GDI"))
+        lines.append(("det J changes sign", f"between {len(found.crossings)} pairs of neighbouring poses"))
+    total = workspace.states.size
+    for state, count in workspace.counts.items():
+        lines.append(("poses", f"{100 * count / total:6.2f} %  {state.words}"))
+    return lines
+
+
+def at_pose(mechanism: Mechanism, pose: PoseLike) -> Lines:
+    """The legs at one pose."""
+    found = pose_values(mechanism, pose)
+    lines = [
+        ("leg lengths", in_unit(mechanism, found["leg_lengths"])),
+        ("pose is", PoseState[found["state"].upper()].words),
+        ("dexterity nu", f"{found['nu']:.6f}"),
+    ]
+    rows = (", ".join(f"{value:9.6f}" for value in row) for row in found["jacobian"])
+    lines += [("Jacobian" if i == 1 else "", f"leg {i}: {row}") for i, row in enumerate(rows, start=1)]
+    if found["nearest_legs"] is not None:
+        i, j = found["nearest_legs"]
+        lines.append(("nearest legs", f"{i} and {j}, {in_unit(mechanism, found['leg_distance'])} apart"))
+    return lines
+
+
+def along(mechanism: Mechanism, way: Trajectory) -> Lines:
+    """The legs along a trajectory: their ranges and speeds, conditioning, and singular poses on the way."""
+    motion = follow(mechanism.geometry, way, mechanism.limits, mechanism.dexterity)
+    lines = [
+        ("time", f"{way.times[-1] - way.times[0]:.6g} s"),
+        ("shortest, longest", in_unit(mechanism, (motion.lengths.min(), motion.lengths.max()))),
+        ("fastest leg", f"{in_unit(mechanism, np.abs(motion.rates).max())}/s"),
+        ("lowest nu", f"{motion.nu.min():.4g}"),
+    ]
+    if (least := motion.least_seconds) is not None:
+        enough = "slow enough" if not motion.too_fast.any() else "too fast for the legs"
+        lines.append(("speed", f"{enough}: this way takes them {least:.6g} s at least"))
+    for state in PoseState:
+        if (share := float((motion.states == state).mean())) > 0.0:
+            lines.append(("way", f"{100 * share:6.2f} %  {state.words}"))
+    for crossing in crossings(mechanism.geometry, way):
+        what = "det J changes sign" if crossing.crosses else "singular"
+        lines.append((what, f"at {crossing.time:.6g} s, {in_unit(mechanism, crossing.pose[:3, 3])}"))
+    return lines
+
+
+def pose_words(mechanism: Mechanism, pose: PoseLike) -> str:
+    """A pose in words: x, y, z in the mechanism's unit, and roll, pitch, yaw in degrees."""
+    T = one_pose(pose)
+    turn = ", ".join(f"{degrees(angle.round(9)) + 0.0:.6g}" for angle in pin.rpy.matrixToRpy(T[:3, :3]))
+    return f"{in_unit(mechanism, T[:3, 3].round(9) + 0.0)}; roll, pitch, yaw {turn} deg"
+
+
+def outcome(designed: Designed) -> Lines:
+    """What a design ended with."""
+    lines = [("ended", designed.search.status.value), ("designs looked at", str(designed.search.evaluations))]
+    lines.append(("time", f"{designed.search.seconds:.3g} s"))
+    if designed.score is None:
+        return [
+            *lines,
+            ("design", "none found: all lack room for joints, or a workspace that is large enough and regular"),
+        ]
+    score = designed.score
+    parts = f"dexterity {score.dexterity:.4f}, workspace {score.workspace:.4f}"
+    return [*lines, ("fitness", f"{score.fitness:.4f}: {parts}")]
+
+
+def values(mechanism: Mechanism, workspace: Workspace) -> dict[str, Any]:
+    """A workspace as plain values in m and rad, for JSON; ``gdi`` is null for a singular mechanism."""
+    found = singularities(workspace)
+    return {
+        "name": mechanism.name,
+        "type": mechanism.geometry.type,
+        "verdict": str(workspace.verdict),
+        "notes": notes(mechanism, workspace),
+        "complete": workspace.complete,
+        "volume": workspace.volume,
+        "volume_in_every_orientation": workspace.volume_of_all,
+        "cells_reached": workspace.cells_reached,
+        "share_reached": float(workspace.reached.mean()),
+        "gdi": workspace.gdi,
+        "norm": mechanism.dexterity.norm,
+        "characteristic_length": workspace.length,
+        "lowest_nu": found.nu,
+        "singular_poses": len(found.poses),
+        "sign_changes": len(found.crossings),
+        "poses": {state.name.lower(): count for state, count in workspace.counts.items()},
+    }
+
+
+def pose_values(mechanism: Mechanism, pose: PoseLike) -> dict[str, Any]:
+    """One pose as plain values in m and rad: its legs, what it is to the limits, its dexterity and Jacobian."""
+    geometry = mechanism.geometry
+    T = as_poses(pose)
+    state = PoseState(int(judge_poses(geometry, mechanism.limits, T)[0]))
+    distances = leg_distances(geometry, T)[0]
+    nearest = (geometry.pairs[distances.argmin()] + 1).tolist() if len(distances) else None
+    return {
+        "pose": T[0].tolist(),
+        "leg_lengths": leg_lengths(geometry, T)[0].tolist(),
+        "state": state.name.lower(),
+        "reached": state.reached,
+        "nu": float(conditioning(geometry, T[0], mechanism.dexterity)),
+        "jacobian": jacobian(geometry, T[0]).tolist(),
+        "nearest_legs": nearest,
+        "leg_distance": float(distances.min()) if len(distances) else None,
+    }
+
+
+def way_values(mechanism: Mechanism, way: Trajectory) -> dict[str, Any]:
+    """A trajectory as plain values in m, s and rad: the legs over time, limits, dexterity, and singular poses."""
+    motion = follow(mechanism.geometry, way, mechanism.limits, mechanism.dexterity)
+    met = crossings(mechanism.geometry, way)
+    return {
+        "times": way.times.tolist(),
+        "poses": way.poses.tolist(),
+        "leg_lengths": motion.lengths.tolist(),
+        "leg_rates": motion.rates.tolist(),
+        "nu": motion.nu.tolist(),
+        "states": [PoseState(int(state)).name.lower() for state in motion.states],
+        "reached": bool(motion.reached.all()),
+        "too_fast": bool(motion.too_fast.any()),
+        "least_seconds": motion.least_seconds,
+        "singular": [{"time": c.time, "pose": c.pose.tolist(), "sign_changes": c.crosses} for c in met],
+    }
