@@ -20,18 +20,21 @@ from pin_metaik.stewart.kinematics.assemblies import Assemblies, all_forward
 from pin_metaik.stewart.kinematics.conditioning import Dexterity, best_length, characteristic_length, conditioning
 from pin_metaik.stewart.kinematics.forward import Forward, ForwardStatus, forward
 from pin_metaik.stewart.kinematics.interference import leg_distances
-from pin_metaik.stewart.kinematics.inverse import leg_lengths, leg_vectors
-from pin_metaik.stewart.kinematics.jacobian import homogenised, jacobian
-from pin_metaik.stewart.kinematics.trajectory import Motion, Trajectory, follow, judge_poses, straight
+from pin_metaik.stewart.kinematics.inverse import inverse, leg_lengths, leg_vectors
+from pin_metaik.stewart.kinematics.jacobian import homogenised, jacobian, transmission, velocity_equation
+from pin_metaik.stewart.kinematics.judging import judge_poses
+from pin_metaik.stewart.kinematics.trajectory import Motion, Trajectory, follow, straight
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.mechanism.ranges import Ranges
 from pin_metaik.stewart.mechanism.task import DesignTask
 from pin_metaik.stewart.model.closure import ClosedModel, closed_model
 from pin_metaik.stewart.model.urdf import save_urdf, to_urdf
+from pin_metaik.stewart.platform.actuation import Links
 from pin_metaik.stewart.platform.geometry import Geometry, legs_of
 from pin_metaik.stewart.platform.layouts import NAMED, standard_geometry
-from pin_metaik.stewart.platform.limits import LegLimits, PoseState
+from pin_metaik.stewart.platform.limits import LegLimits, PoseState, ServoLimits
 from pin_metaik.stewart.platform.poses import pose_at
+from pin_metaik.stewart.platform.servos import Servos
 from pin_metaik.stewart.show.picture import draw, draw_above, draw_history, draw_into, draw_motion, save_picture
 from pin_metaik.stewart.show.progress import progress_bar
 from pin_metaik.stewart.synthesis.design import Designed, design
@@ -57,11 +60,14 @@ __all__ = [
     "Geometry",
     "Grid",
     "LegLimits",
+    "Links",
     "Mechanism",
     "Motion",
     "PoseState",
     "Ranges",
     "Score",
+    "ServoLimits",
+    "Servos",
     "Singularities",
     "Trajectory",
     "TypeDesign",
@@ -83,6 +89,7 @@ __all__ = [
     "follow",
     "forward",
     "homogenised",
+    "inverse",
     "jacobian",
     "judge_poses",
     "leg_distances",
@@ -107,4 +114,6 @@ __all__ = [
     "survey",
     "to_toml",
     "to_urdf",
+    "transmission",
+    "velocity_equation",
 ]

@@ -5,8 +5,8 @@ In one orientation the lengths of the legs leave P the intersection of spherical
 such a set, P is the pole of a sphere, an extreme point of a circle in which two surfaces meet, or a point where three
 meet. These are few: all are tried, and the box round those within every shell is exact.
 
-The angles of joints and the distances between legs have no such form. What they leave is covered: a cell is out when a
-limit is missed at its centre by more than it can change on the way to a corner.
+The angles of joints, the distances between legs and where the rods of servos reach have no such form. What they leave
+is covered: a cell is out when a limit is missed at its centre by more than it can change on the way to a corner.
 
 Arrays are those of ``judging``; ``spheres`` (n, 3) are the c_i of one orientation.
 """
@@ -18,6 +18,7 @@ import math
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit, shared
+from pin_metaik.stewart.kernels.closing import arc_misses
 from pin_metaik.stewart.kernels.judging import segment_distance
 
 TOUCH = 1e-9
@@ -212,6 +213,7 @@ def ruled_out(
     sockets: Floats,
     turned_sockets: Floats,
     limits: Floats,
+    servos: Floats | None,
     pairs: Ints,
     legs: Floats,
     radius: float,
@@ -219,8 +221,13 @@ def ruled_out(
     """Whether no position within this radius (m) is allowed, from the legs (n, 3) of the one in the middle.
 
     Moving P by s changes the length of a leg, and the distance between two, by at most s; and a joint's angle is
-    allowed where the end of its leg lies in a cone.
+    allowed where the end of its leg lies in a cone. Of servos only their angles and the lengths of rods are looked at.
     """
+    if servos is not None:
+        for i in range(legs.shape[0]):
+            if arc_misses(servos, i, legs, radius):
+                return True
+        return False
     for i in range(legs.shape[0]):
         d, at_base, at_platform = 0.0, 0.0, 0.0
         for c in range(3):
@@ -238,13 +245,17 @@ def ruled_out(
     return False
 
 
-@jit("i8(f8[:,::1], f8[:,:,::1], f8[:,:,::1], f8[:,:,::1], f8[::1], i8[:,::1], f8[:,::1], i8[::1], f8[:,::1])")
+@jit(
+    "i8(f8[:,::1], f8[:,:,::1], f8[:,:,::1], f8[:,:,::1], f8[::1], f8[:,::1]?, i8[:,::1], f8[:,::1], i8[::1],"
+    " f8[:,::1])"
+)
 def cover(
     base: Floats,
     turned: Floats,
     sockets: Floats,
     turned_sockets: Floats,
     limits: Floats,
+    servos: Floats | None,
     pairs: Ints,
     box: Floats,
     counts: Ints,
@@ -270,7 +281,7 @@ def cover(
                     for i in range(n):
                         for c in range(3):
                             legs[i, c] = place[c] + turned[o, i, c] - base[i, c]
-                    if not ruled_out(base, sockets[0], turned_sockets[o], limits, pairs, legs, radius):
+                    if not ruled_out(base, sockets[0], turned_sockets[o], limits, servos, pairs, legs, radius):
                         left += 1
                         for c in range(3):
                             out[0, c] = min(out[0, c], place[c] - 0.5 * size[c])

@@ -1,9 +1,11 @@
 """The compiled loops: poses judged against the limits and measured, and distances between legs.
 
-Arrays every kernel takes (made by ``Geometry`` and ``LegLimits``; n legs):
+Arrays every kernel takes (made by ``Geometry`` and its limits; n legs):
 
 * ``base``, ``arms`` (n, 3): b_i in the base frame, m_i in the platform frame.
 * ``sockets`` (2, n, 3): unit axes of the base joints (base frame) and of the platform joints (platform frame).
+* ``servos`` (n, 15): what moves the legs, see ``closing``; None for slides. With servos, links are rods that begin at
+  the tips of horns, and so do the axes of their joints.
 * ``limits`` (5,): shortest and longest leg, cosine of the largest angle at the base and at the platform joint, least
   distance between legs; -1 is no limit on an angle, 0 none on the distance.
 * ``pairs`` (p, 2): legs that share no joint.
@@ -19,6 +21,7 @@ import math
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit, shared
+from pin_metaik.stewart.kernels.closing import close
 
 SINGULAR = 1e-9
 """Below this nu a pose is singular: rounding leaves 1e-16, designs worth building have more than 1e-3."""
@@ -129,16 +132,16 @@ def spectral(J: Floats, diagonal: Floats, W: Floats) -> float:
 
 @shared
 def measure(
-    legs: Floats, lengths: Floats, turned: Floats, scale: float, norm: int, work: Floats
+    legs: Floats, divisors: Floats, turned: Floats, scale: float, norm: int, work: Floats
 ) -> tuple[float, float]:
-    """The nu of a pose and the sign of det J, from its legs (n, 3), their lengths and R m_i (n, 3).
+    """The nu of a pose and the sign of det J, from its links (n, 3), what they are divided by and R m_i (n, 3).
 
-    ``work`` is (2 n + 2, 6): room for J, a diagonal, a column and the rotated rows.
+    Divided by its length a link becomes the row of a slide; see ``closing`` for that of a servo. ``work`` is (2 n + 2, 6): room for J, a diagonal, a column and the rotated rows.
     """
     n = legs.shape[0]
     J, diagonal, column = work[:n], work[n], work[n + 1]
     for i in range(n):
-        shrink = 1.0 / lengths[i] if lengths[i] > 0.0 else 0.0  # a leg of no length has no direction
+        shrink = 1.0 / divisors[i] if divisors[i] > 0.0 else 0.0  # a leg of no length has no direction
         zx, zy, zz = shrink * legs[i, 0], shrink * legs[i, 1], shrink * legs[i, 2]
         x, y, z = turned[i, 0] / scale, turned[i, 1] / scale, turned[i, 2] / scale
         J[i, 0], J[i, 1], J[i, 2] = zx, zy, zz
@@ -193,11 +196,15 @@ def judge(
     pairs: Ints,
     legs: Floats,
     lengths: Floats,
+    divisors: Floats,
     scale: float,
     norm: int,
     work: Floats,
 ) -> tuple[int, float]:
-    """State and nu of a pose whose legs have lengths they can have; the state names the first limit that is not met."""
+    """State and nu of a pose that the legs can reach; the state names the first limit that is not met.
+
+    ``base`` and ``sockets`` (n, 3) are where the links begin and the axes of their joints there.
+    """
     if limits[2] > -1.0 or limits[3] > -1.0:
         for i in range(base.shape[0]):
             low, high = 0.0, 0.0
@@ -212,12 +219,40 @@ def judge(
         for p in range(pairs.shape[0]):
             if segment_distance(base, legs, pairs[p, 0], pairs[p, 1]) < limits[4]:
                 return TOO_CLOSE, 0.0
-    nu, sign = measure(legs, lengths, turned, scale, norm, work)
+    nu, sign = measure(legs, divisors, turned, scale, norm, work)
     return (DEGENERATE, 0.0) if nu == 0.0 else (POSITIVE if sign > 0.0 else NEGATIVE, nu)
 
 
+@inline
+def reach(
+    base: Floats,
+    sockets: Floats,
+    limits: Floats,
+    servos: Floats | None,
+    legs: Floats,
+    starts: Floats,
+    axes: Floats,
+    lengths: Floats,
+    divisors: Floats,
+) -> int:
+    """State of a pose by its legs (n, 3) alone; if they reach, the links in their place and all that ``judge`` wants."""
+    for i in range(base.shape[0]):
+        if servos is None:
+            square = legs[i, 0] * legs[i, 0] + legs[i, 1] * legs[i, 1] + legs[i, 2] * legs[i, 2]
+            lengths[i] = math.sqrt(square)
+            if lengths[i] < limits[0]:
+                return TOO_SHORT
+            if lengths[i] > limits[1]:
+                return TOO_LONG
+        else:
+            state = close(i, base, servos, sockets, legs, starts, axes, lengths, divisors)
+            if state != POSITIVE:
+                return state
+    return POSITIVE
+
+
 @jit(
-    "void(f8[:,::1], f8[:,:,::1], f8[:,:,::1], f8[:,:,::1], f8[::1], i8[:,::1], f8[::1], f8[::1], f8[::1],"
+    "void(f8[:,::1], f8[:,:,::1], f8[:,:,::1], f8[:,:,::1], f8[::1], f8[:,::1]?, i8[:,::1], f8[::1], f8[::1], f8[::1],"
     " f8, i8, i1[:,:,:,::1], f8[:,:,:,::1])"
 )
 def survey(
@@ -226,6 +261,7 @@ def survey(
     sockets: Floats,
     turned_sockets: Floats,
     limits: Floats,
+    servos: Floats | None,
     pairs: Ints,
     xs: Floats,
     ys: Floats,
@@ -238,10 +274,13 @@ def survey(
     """States and nu (x, y, z, o) over a grid of positions, in o orientations.
 
     ``turned`` (o, n, 3) is R m_i, ``turned_sockets`` (o, n, 3) the axes of the platform joints turned likewise. Most
-    positions fail at the first legs, and cost 10 ns: the squares along x and y are summed once a column.
+    positions fail at the first legs, and with slides cost 10 ns: the squares along x and y are summed once a column.
     """
     n = base.shape[0]
     legs, lengths, across, work = np.empty((n, 3)), np.empty(n), np.empty(n), np.empty((2 * n + 2, 6))
+    starts, axes, divisors = base, sockets[0], lengths
+    if servos is not None:
+        starts, axes, divisors = np.empty((n, 3)), np.empty((n, 3)), np.empty(n)
     shortest, longest = limits[0] * limits[0], limits[1] * limits[1]
     for ix in range(xs.shape[0]):
         for iy in range(ys.shape[0]):
@@ -252,27 +291,36 @@ def survey(
                     across[i] = legs[i, 0] * legs[i, 0] + legs[i, 1] * legs[i, 1]
                 for iz in range(zs.shape[0]):
                     state, nu = POSITIVE, 0.0
-                    for i in range(n):
-                        legs[i, 2] = zs[iz] + turned[o, i, 2] - base[i, 2]
-                        lengths[i] = across[i] + legs[i, 2] * legs[i, 2]
-                        if lengths[i] < shortest:
-                            state = TOO_SHORT
-                            break
-                        if lengths[i] > longest:
-                            state = TOO_LONG
-                            break
-                    if state == POSITIVE:
+                    if servos is None:
                         for i in range(n):
-                            lengths[i] = math.sqrt(lengths[i])
+                            legs[i, 2] = zs[iz] + turned[o, i, 2] - base[i, 2]
+                            lengths[i] = across[i] + legs[i, 2] * legs[i, 2]
+                            if lengths[i] < shortest:
+                                state = TOO_SHORT
+                                break
+                            if lengths[i] > longest:
+                                state = TOO_LONG
+                                break
+                        if state == POSITIVE:
+                            for i in range(n):
+                                lengths[i] = math.sqrt(lengths[i])
+                    else:
+                        for i in range(n):
+                            legs[i, 0] = xs[ix] + turned[o, i, 0] - base[i, 0]
+                            legs[i, 1] = ys[iy] + turned[o, i, 1] - base[i, 1]
+                            legs[i, 2] = zs[iz] + turned[o, i, 2] - base[i, 2]
+                        state = reach(base, sockets[0], limits, servos, legs, starts, axes, lengths, divisors)
+                    if state == POSITIVE:
                         state, nu = judge(
-                            base,
+                            starts,
                             turned[o],
-                            sockets[0],
+                            axes,
                             turned_sockets[o],
                             limits,
                             pairs,
                             legs,
                             lengths,
+                            divisors,
                             scale,
                             norm,
                             work,
@@ -288,12 +336,15 @@ def turn(pose: Floats, points: Floats, out: Floats) -> None:
             out[i, r] = pose[r, 0] * points[i, 0] + pose[r, 1] * points[i, 1] + pose[r, 2] * points[i, 2]
 
 
-@jit("void(f8[:,::1], f8[:,::1], f8[:,:,::1], f8[::1], i8[:,::1], f8[:,:,::1], f8, i8, i1[::1], f8[::1])")
+@jit(
+    "void(f8[:,::1], f8[:,::1], f8[:,:,::1], f8[::1], f8[:,::1]?, i8[:,::1], f8[:,:,::1], f8, i8, i1[::1], f8[::1])"
+)
 def judge_poses(
     base: Floats,
     arms: Floats,
     sockets: Floats,
     limits: Floats,
+    servos: Floats | None,
     pairs: Ints,
     poses: Floats,
     scale: float,
@@ -305,36 +356,26 @@ def judge_poses(
     n = base.shape[0]
     legs, lengths, work = np.empty((n, 3)), np.empty(n), np.empty((2 * n + 2, 6))
     turned, turned_sockets = np.empty((n, 3)), np.empty((n, 3))
+    starts, axes, divisors = base, sockets[0], lengths
+    if servos is not None:
+        starts, axes, divisors = np.empty((n, 3)), np.empty((n, 3)), np.empty(n)
     for k in range(poses.shape[0]):
         turn(poses[k], arms, turned)
         turn(poses[k], sockets[1], turned_sockets)
-        states[k], nus[k] = POSITIVE, 0.0
         for i in range(n):
             for c in range(3):
                 legs[i, c] = poses[k, c, 3] + turned[i, c] - base[i, c]
-            square = legs[i, 0] * legs[i, 0] + legs[i, 1] * legs[i, 1] + legs[i, 2] * legs[i, 2]
-            lengths[i] = math.sqrt(square)
-            if lengths[i] < limits[0]:
-                states[k] = TOO_SHORT
-                break
-            if lengths[i] > limits[1]:
-                states[k] = TOO_LONG
-                break
+        nus[k] = 0.0
+        states[k] = reach(base, sockets[0], limits, servos, legs, starts, axes, lengths, divisors)
         if states[k] == POSITIVE:
             states[k], nus[k] = judge(
-                base, turned, sockets[0], turned_sockets, limits, pairs, legs, lengths, scale, norm, work
+                starts, turned, axes, turned_sockets, limits, pairs, legs, lengths, divisors, scale, norm, work
             )
 
 
-@jit("void(f8[:,::1], f8[:,::1], i8[:,::1], f8[:,:,::1], f8[:,::1])")
-def distances(base: Floats, arms: Floats, pairs: Ints, poses: Floats, out: Floats) -> None:
-    """Distances (k, p) between the axes of the pairs of legs (p, 2) at poses (k, 4, 4)."""
-    n = base.shape[0]
-    legs = np.empty((n, 3))
-    for k in range(poses.shape[0]):
-        turn(poses[k], arms, legs)
-        for i in range(n):
-            for c in range(3):
-                legs[i, c] += poses[k, c, 3] - base[i, c]
+@jit("void(f8[:,:,::1], f8[:,:,::1], i8[:,::1], f8[:,::1])")
+def distances(starts: Floats, links: Floats, pairs: Ints, out: Floats) -> None:
+    """Distances (k, p) between the axes of the pairs of links (p, 2), given by their starts and vectors (k, n, 3)."""
+    for k in range(starts.shape[0]):
         for p in range(pairs.shape[0]):
-            out[k, p] = segment_distance(base, legs, pairs[p, 0], pairs[p, 1])
+            out[k, p] = segment_distance(starts[k], links[k], pairs[p, 0], pairs[p, 1])

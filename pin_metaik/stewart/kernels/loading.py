@@ -7,7 +7,7 @@ from types import ModuleType
 
 
 @cache
-def load_kernels() -> ModuleType:
+def load_judging() -> ModuleType:
     """The loops over poses; each is compiled, or read from numba's cache, when it is first called."""
     from pin_metaik.stewart.kernels import judging
 

@@ -51,7 +51,7 @@ def rotate(pose: Floats, wx: float, wy: float, wz: float) -> None:
         pose[2, c] = cos * z + sin * (wx * y - wy * x) + along * wz
 
 
-@jit("void(f8[:,::1], f8[:,::1], f8[:,::1], f8, f8, i8, f8[:,:,::1], i8[::1], f8[::1], i1[::1])")
+@jit("void(f8[:,:,::1], f8[:,::1], f8[:,::1], f8, f8, i8, f8[:,:,::1], i8[::1], f8[::1], i1[::1])")
 def newton(
     base: Floats,
     arms: Floats,
@@ -66,21 +66,22 @@ def newton(
 ) -> None:
     """Newton from poses (k, 4, 4), in place, to the leg lengths (k, n): the shortest step when legs are fewer than six.
 
+    ``base`` (k, n, 3) is where the legs begin; the same for all if it is (1, n, 3).
     Lengths are dimensionless in J (rotations count ``scale`` metres a radian); steps are at most one radian long.
     """
-    n = base.shape[0]
+    n = arms.shape[0]
     turned, J, diagonal, error, step = np.empty((n, 3)), np.empty((n, 6)), np.empty(n), np.empty(n), np.empty(6)
     for k in range(poses.shape[0]):
-        pose = poses[k]
+        pose, starts = poses[k], base[k if base.shape[0] > 1 else 0]
         states[k] = SPENT
         for iteration in range(most + 1):
             iterations[k] = iteration
             turn(pose, arms, turned)
             errors[k] = 0.0
             for i in range(n):
-                x = pose[0, 3] + turned[i, 0] - base[i, 0]
-                y = pose[1, 3] + turned[i, 1] - base[i, 1]
-                z = pose[2, 3] + turned[i, 2] - base[i, 2]
+                x = pose[0, 3] + turned[i, 0] - starts[i, 0]
+                y = pose[1, 3] + turned[i, 1] - starts[i, 1]
+                z = pose[2, 3] + turned[i, 2] - starts[i, 2]
                 d = math.sqrt(x * x + y * y + z * z)
                 error[i] = lengths[k, i] - d
                 errors[k] = max(errors[k], abs(error[i]))

@@ -9,7 +9,7 @@ or, where joints are shared or stand symmetrically, what is found of them for su
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from typing import Any
 
@@ -22,7 +22,7 @@ from pin_metaik.errors import InvalidConfiguration, InvalidGeometry, InvalidSett
 from pin_metaik.optimize.space import Array
 from pin_metaik.randomness import as_generator
 from pin_metaik.stewart.kernels.loading import load_homotopy
-from pin_metaik.stewart.kinematics.forward import ForwardStatus, as_lengths, newton
+from pin_metaik.stewart.kinematics.forward import ForwardStatus, as_coordinates, newton
 from pin_metaik.stewart.platform.geometry import MOST_LEGS, Geometry
 
 Complexes = NDArray[np.complex128]
@@ -86,14 +86,15 @@ class Start:
 
 
 @checked
-def all_forward(geometry: Geometry, lengths: ArrayLike, rng: int | np.random.Generator | None = 0) -> Assemblies:
-    """Every assembly: the poses at which six legs have these lengths, highest first; there are 0 ... 40.
+def all_forward(geometry: Geometry, coordinates: ArrayLike, rng: int | np.random.Generator | None = 0) -> Assemblies:
+    """Every assembly: the poses at which six legs have these lengths, or their servos angles; there are 0 ... 40.
 
-    A platform whose joints lie in planes has a mirror image below the base for every assembly above it.
+    The highest comes first. A platform of slides whose joints lie in planes has a mirror image below the base for every
+    assembly above it. With servos these are the assemblies of its rods from the tips of its horns, on either branch.
 
     Args:
         geometry: A platform with six legs.
-        lengths: (6,) in m.
+        coordinates: (6,), lengths in m or angles in rad.
         rng: Seed or generator of detours and random starts, where the first paths do not find all; the same seed gives
             the same poses.
 
@@ -101,15 +102,17 @@ def all_forward(geometry: Geometry, lengths: ArrayLike, rng: int | np.random.Gen
         The poses; ``complete`` says whether none is missing.
 
     Raises:
-        InvalidConfiguration: Lengths of the wrong shape or not above zero.
+        InvalidConfiguration: Coordinates of the wrong shape or not finite, or lengths that are not above zero.
         InvalidSetting: Fewer than six legs: their poses are not separate.
         InvalidGeometry: A singular mechanism: its platform moves while the legs are held.
     """
     if geometry.n < MOST_LEGS:
         raise InvalidSetting(f"{geometry.n} legs leave {MOST_LEGS - geometry.n} freedoms: their poses are not separate")
-    d = as_lengths(geometry, lengths)
+    d = as_coordinates(geometry, coordinates)
     if len(d) != 1:
-        raise InvalidConfiguration(f"all assemblies are found for one set of leg lengths, got {len(d)}")
+        raise InvalidConfiguration(f"all assemblies are found for one set of coordinates, got {len(d)}")
+    if geometry.servos is not None:
+        geometry, d = _held(geometry, d)
     generator = as_generator(rng)
     points, bound = _solutions(geometry, (d[0] / _size(geometry)) ** 2, generator)
     poses, certain = _real(geometry, d, points)
@@ -118,6 +121,14 @@ def all_forward(geometry: Geometry, lengths: ArrayLike, rng: int | np.random.Gen
         poses = _by_chance(geometry, d, poses, generator)
     highest = np.lexsort((poses[:, 0, 3], poses[:, 1, 3], -poses[:, 2, 3].round(9)))
     return Assemblies(poses[highest], complete, len(points), bound)
+
+
+def _held(geometry: Geometry, q: Array) -> tuple[Geometry, Array]:
+    """A platform whose servos are held at angles (1, 6): one of slides from the tips of its horns, and their lengths."""
+    (tips,), rods = geometry.actuation.held(geometry.b, q)
+    legs = tuple((i, platform) for i, (_, platform) in enumerate(geometry.legs))
+    parts = {"base_radius": 0.0, "base_angles": (), "base": tuple(map(tuple, tips.tolist()))}
+    return replace(geometry, legs=legs, servos=None, **parts), np.array(rods)
 
 
 def _solutions(geometry: Geometry, squares: Array, rng: np.random.Generator) -> tuple[Complexes, int]:

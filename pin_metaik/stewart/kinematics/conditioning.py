@@ -15,15 +15,14 @@ from pin_metaik.arguments import checked, shown
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.settings import one_of
 from pin_metaik.optimize.space import Array
-from pin_metaik.stewart.kernels.loading import load_kernels
 from pin_metaik.stewart.kinematics.golden import golden_section
+from pin_metaik.stewart.kinematics.judging import judged
 from pin_metaik.stewart.platform.geometry import Geometry
 from pin_metaik.stewart.platform.poses import PoseLike, as_poses, is_many
 
 Norm: TypeAlias = Literal["frobenius", "two"]
 NORMS: tuple[Norm, ...] = get_args(Norm)  # their positions are what the compiled loops know them by
 
-UNLIMITED = np.array([0.0, np.inf, -1.0, -1.0, 0.0])
 SPAN = 100.0  # the best characteristic length is looked for up to so many times either side of the platform's size
 
 
@@ -117,10 +116,6 @@ def is_number(value: object) -> bool:
 
 
 def measure(geometry: Geometry, T: Array, length: float, norm: Norm) -> tuple[Array, NDArray[np.int8]]:
-    """The nu (k,) and ``PoseState`` (k,) of poses (k, 4, 4), whatever the legs allow."""
-    states, nu = np.empty(len(T), dtype=np.int8), np.empty(len(T))
-    b, m, pairs = geometry.arrays
-    no_sockets = np.zeros((2, geometry.n, 3))
-    code = NORMS.index(norm)
-    load_kernels().judge_poses(b, m, no_sockets, UNLIMITED, pairs, T, length, code, states, nu)
+    """The nu (k,) and ``PoseState`` (k,) of poses (k, 4, 4), whatever the limits allow."""
+    states, nu = judged(geometry, None, T, length, NORMS.index(norm))
     return nu, states

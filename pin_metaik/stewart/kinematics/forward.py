@@ -1,4 +1,8 @@
-"""Forward kinematics: the poses at which the legs have given lengths, by Newton on the inverse kinematics."""
+"""Forward kinematics: the poses at which the legs have given coordinates, by Newton on the inverse kinematics.
+
+While the servos of a platform are held, its rods are legs of known lengths that begin at the known tips of its horns:
+forward kinematics of servos is that of slides with other base joints (``held``), and has the same assemblies.
+"""
 
 from __future__ import annotations
 
@@ -32,12 +36,12 @@ class ForwardStatus(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class Forward:
-    """Poses found for leg lengths.
+    """Poses found for coordinates of the legs.
 
     Attributes:
         poses: (k, 4, 4) poses of P in the base frame; where not solved, the last one tried.
         states: A ``ForwardStatus`` each (k,).
-        errors: Largest error of a leg, m (k,).
+        errors: Largest error of the length of a leg, or of a rod, m (k,).
         iterations: Newton steps taken (k,).
     """
 
@@ -65,61 +69,70 @@ class Forward:
 
 
 @checked
-def forward(geometry: Geometry, lengths: ArrayLike, start: PoseLike | None = None) -> Forward:
-    """The pose nearest to the start, in Newton's sense, at which the legs have these lengths.
+def forward(geometry: Geometry, coordinates: ArrayLike, start: PoseLike | None = None) -> Forward:
+    """The pose nearest to the start, in Newton's sense, at which the legs have these lengths, or their servos angles.
 
-    With fewer than six legs the lengths leave freedoms: steps are the shortest ones, a radian counting as a platform
+    On which branch a servo is then, its angle does not say. With fewer than six legs the coordinates leave freedoms: steps are the shortest ones, a radian counting as a platform
     radius.
 
     Args:
         geometry: The platform.
-        lengths: In m: (n,) for one pose, (k, n) for many.
-        start: Where to start: one pose for all or one each. Default: level above the base, at the lengths' mean height.
+        coordinates: Lengths in m, or angles in rad: (n,) for one pose, (k, n) for many.
+        start: Where to start: one pose for all or one each. Default: level above the base, at the links' mean height.
 
     Raises:
-        InvalidConfiguration: Lengths of the wrong shape or not above zero.
-        InvalidTarget: The start is not a pose, or starts are not as many as the lengths.
+        InvalidConfiguration: Coordinates of the wrong shape or not finite, or lengths that are not above zero.
+        InvalidTarget: The start is not a pose, or starts are not as many as the coordinates.
     """
-    d = as_lengths(geometry, lengths)
-    T = _level(geometry, d) if start is None else as_poses(start)
-    if len(T) not in (1, len(d)):
-        raise InvalidConfiguration(f"{len(d)} sets of leg lengths need one start or {len(d)}, got {len(T)}")
-    return newton(geometry, d, np.ascontiguousarray(np.broadcast_to(T, (len(d), 4, 4))).copy())
+    q = as_coordinates(geometry, coordinates)
+    T = level(geometry, q) if start is None else as_poses(start)
+    if len(T) not in (1, len(q)):
+        raise InvalidConfiguration(f"{len(q)} sets of {_words(geometry)} need one start or {len(q)}, got {len(T)}")
+    return newton(geometry, q, np.ascontiguousarray(np.broadcast_to(T, (len(q), 4, 4))).copy())
 
 
-def newton(geometry: Geometry, d: Array, T: Array) -> Forward:
-    """Newton from poses (k, 4, 4), in place, to leg lengths (k, n)."""
-    b, m, _ = geometry.arrays
-    iterations, errors, states = np.zeros(len(d), dtype=np.int64), np.zeros(len(d)), np.zeros(len(d), dtype=np.int8)
+def newton(geometry: Geometry, q: Array, T: Array) -> Forward:
+    """Newton from poses (k, 4, 4), in place, to coordinates (k, n)."""
+    starts, d = (np.require(part, requirements="CW") for part in geometry.actuation.held(geometry.b, q))
+    iterations, errors, states = np.zeros(len(q), dtype=np.int64), np.zeros(len(q)), np.zeros(len(q), dtype=np.int8)
     tolerance = TOLERANCE * float(d.max(initial=0.0))
-    load_newton().newton(b, m, d, geometry.platform_radius, tolerance, ITERATIONS, T, iterations, errors, states)
+    arms = geometry.arrays[1]
+    load_newton().newton(starts, arms, d, geometry.platform_radius, tolerance, ITERATIONS, T, iterations, errors, states)
     return Forward(T, states, errors, iterations)
 
 
-def as_lengths(geometry: Geometry, lengths: ArrayLike) -> Array:
-    """Leg lengths (k, n) in m.
+def as_coordinates(geometry: Geometry, coordinates: ArrayLike) -> Array:
+    """Coordinates (k, n): lengths in m, or angles in rad.
 
     Raises:
-        InvalidConfiguration: Of the wrong shape, or not above zero.
+        InvalidConfiguration: Of the wrong shape, not finite, or lengths that are not above zero.
     """
+    words, unit = _words(geometry), "m" if geometry.servos is None else "rad"
     try:
-        d = np.array(lengths, dtype=float, ndmin=2, order="C")
+        q = np.array(coordinates, dtype=float, ndmin=2, order="C")
     except (TypeError, ValueError, OverflowError):
-        raise InvalidConfiguration(f"leg lengths are numbers in m, got {lengths!r}") from None
-    if d.ndim != 2 or d.shape[1] != geometry.n:
+        raise InvalidConfiguration(f"{words} are numbers in {unit}, got {coordinates!r}") from None
+    if q.ndim != 2 or q.shape[1] != geometry.n:
         raise InvalidConfiguration(
-            f"leg lengths have shape ({geometry.n},) or (k, {geometry.n}), got {np.shape(lengths)}"
+            f"{words} have shape ({geometry.n},) or (k, {geometry.n}), got {np.shape(coordinates)}"
         )
-    if not (np.isfinite(d) & (d > 0.0)).all():
-        raise InvalidConfiguration(f"leg lengths are above zero and finite, got {d[~(np.isfinite(d) & (d > 0.0))][0]}")
-    return d
+    if geometry.servos is None and not (wrong := ~(np.isfinite(q) & (q > 0.0))).sum() == 0:
+        raise InvalidConfiguration(f"{words} are above zero and finite, got {q[wrong][0]}")
+    if not np.isfinite(q).all():
+        raise InvalidConfiguration(f"{words} are finite, got {q[~np.isfinite(q)][0]}")
+    return q
 
 
-def _level(geometry: Geometry, d: Array) -> Array:
-    """Level poses (k, 4, 4) over the base, where the mean square of the legs is right; else as high as the longest."""
-    offset = geometry.m - geometry.b
-    across = (offset[:, :2] ** 2).sum(axis=1).mean()
+def level(geometry: Geometry, q: Array) -> Array:
+    """Level poses (k, 4, 4) over the base, where the mean square of the links is right; else as high as the longest."""
+    starts, d = geometry.actuation.held(geometry.b, q)
+    offset = geometry.m - starts  # (k or 1, n, 3)
+    across = (offset[..., :2] ** 2).sum(axis=-1).mean(axis=-1)
     square = (d**2).mean(axis=1) - across
-    T = np.tile(np.eye(4), (len(d), 1, 1))
-    T[:, 2, 3] = np.sqrt(np.where(square > 0.0, square, d.max(axis=1) ** 2)) - offset[:, 2].mean()
+    T = np.tile(np.eye(4), (len(q), 1, 1))
+    T[:, 2, 3] = np.sqrt(np.where(square > 0.0, square, d.max(axis=1) ** 2)) - offset[..., 2].mean(axis=-1)
     return T
+
+
+def _words(geometry: Geometry) -> str:
+    return "leg lengths" if geometry.servos is None else "servo angles"

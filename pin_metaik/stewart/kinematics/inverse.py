@@ -1,18 +1,48 @@
-"""Inverse kinematics, Eq. 1-2: how long each leg is at a pose."""
+"""Inverse kinematics, Eq. 1-2: how long each leg is at a pose, or where its servo stands."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 
 from pin_metaik.arguments import checked
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.space import Array
+from pin_metaik.stewart.platform.actuation import Links
 from pin_metaik.stewart.platform.geometry import Geometry
 from pin_metaik.stewart.platform.poses import PoseLike, as_poses, is_many
 
 
 @checked
+def inverse(geometry: Geometry, poses: PoseLike, branches: int | tuple[int, ...] | None = None) -> Links:
+    """Inverse kinematics in closed form: the coordinate of every leg, and where its link is.
+
+    Args:
+        geometry: The platform.
+        poses: ``pin.SE3`` or (4, 4) for one pose, (k, 4, 4) or a list for many.
+        branches: Of servos, instead of the geometry's own: 1 or -1, for all legs or for each.
+
+    Returns:
+        The legs at each of the poses, a row each; ``reached`` says at which every rod reaches its platform joint, and
+        ``missing`` what is missing.
+
+    Raises:
+        InvalidTarget: Not poses.
+        InvalidSetting: Branches of legs that are slides.
+        InvalidGeometry: Other branches than 1 and -1, or not one for each leg.
+    """
+    actuation = geometry.actuation
+    if branches is not None:
+        if geometry.servos is None:
+            raise InvalidSetting("legs that are slides have no branches; those of servos have two each")
+        actuation = replace(geometry.servos, branches=branches)
+    return actuation.links(geometry.b, leg_vectors(geometry, poses))
+
+
+@checked
 def leg_vectors(geometry: Geometry, poses: PoseLike) -> Array:
-    """Legs from base to platform joint, in the base frame, m: (k, n, 3).
+    """Legs from base to platform joint, in the base frame, m: (k, n, 3); of servos, from the shaft.
 
     Raises:
         InvalidTarget: Not poses.
@@ -25,7 +55,7 @@ def leg_vectors(geometry: Geometry, poses: PoseLike) -> Array:
 
 @checked
 def leg_lengths(geometry: Geometry, poses: PoseLike) -> Array:
-    """Lengths d_i = |v_i| of the legs, m: (k, n); (n,) for a single pose.
+    """Lengths d_i = |v_i| of the legs, m: (k, n); (n,) for a single pose. Of servos, from the shaft; see ``inverse``.
 
     Args:
         geometry: The platform.

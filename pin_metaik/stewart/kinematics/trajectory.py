@@ -12,12 +12,12 @@ from pin_metaik.arguments import array, checked, checked_as
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.optimize.settings import few, within
 from pin_metaik.optimize.space import Array
-from pin_metaik.stewart.kernels.loading import load_kernels
 from pin_metaik.stewart.kinematics.conditioning import DEFAULT, Dexterity, characteristic_length, measure
-from pin_metaik.stewart.kinematics.inverse import leg_lengths
+from pin_metaik.stewart.kinematics.inverse import inverse
 from pin_metaik.stewart.kinematics.jacobian import jacobian
+from pin_metaik.stewart.kinematics.judging import judge_poses
 from pin_metaik.stewart.platform.geometry import Geometry
-from pin_metaik.stewart.platform.limits import LegLimits, PoseState
+from pin_metaik.stewart.platform.limits import Limits, PoseState
 from pin_metaik.stewart.platform.poses import PoseLike, as_poses, one_pose
 
 
@@ -117,16 +117,16 @@ class Motion:
 
     Attributes:
         trajectory: The poses over time.
-        lengths: Of the legs, m (k, n).
-        rates: Of the legs, m/s (k, n).
+        coordinates: Of the legs (k, n): lengths in m, or angles of servos in rad, NaN where a rod does not reach.
+        rates: Of the legs, m/s or rad/s (k, n).
         nu: Local conditioning index (k,); 0 where singular.
         states: A ``PoseState`` each (k,): the limits, and which side of a singularity.
         length: Characteristic length of nu, m.
-        speed: The fastest that a leg may be, m/s; None if that is not limited.
+        speed: The fastest that a leg may be, m/s or rad/s; None if that is not limited.
     """
 
     trajectory: Trajectory
-    lengths: Array
+    coordinates: Array
     rates: Array
     nu: Array
     states: NDArray[np.int8]
@@ -141,12 +141,17 @@ class Motion:
         return fast
 
     @property
+    def fastest(self) -> float:
+        """The greatest rate of a leg at a sample that it reaches, m/s or rad/s; 0 if it reaches none."""
+        return float(np.abs(self.rates).max(initial=0.0, where=~np.isnan(self.rates)))
+
+    @property
     def least_seconds(self) -> float | None:
         """How long this way must take so that no leg is too fast at a sample, s; None without a limit on speed."""
         if self.speed is None:
             return None
         times = self.trajectory.times
-        return float((times[-1] - times[0]) * np.abs(self.rates).max() / self.speed)
+        return float((times[-1] - times[0]) * self.fastest / self.speed)
 
     @property
     def reached(self) -> NDArray[np.bool_]:
@@ -155,17 +160,22 @@ class Motion:
         return reached
 
     @property
+    def lengths(self) -> Array:
+        """Lengths of the legs, m (k, n): the coordinates of slides."""
+        return self.coordinates
+
+    @property
     def stroke(self) -> Array:
-        """How far each leg travels between its shortest and longest, m (n,)."""
-        stroke: Array = np.ptp(self.lengths, axis=0)
+        """How far each leg travels between its least and greatest coordinate, m or rad (n,)."""
+        stroke: Array = np.ptp(self.coordinates, axis=0)
         return stroke
 
 
 @checked
 def follow(
-    geometry: Geometry, trajectory: Trajectory, limits: LegLimits | None = None, dexterity: Dexterity = DEFAULT
+    geometry: Geometry, trajectory: Trajectory, limits: Limits | None = None, dexterity: Dexterity = DEFAULT
 ) -> Motion:
-    """Move a platform along a trajectory: lengths by Eq. 2, rates ``J (v, omega)``, nu and limits at every sample.
+    """Move a platform along a trajectory: inverse kinematics, rates ``J (v, omega)``, nu and limits at every sample.
 
     Args:
         geometry: The platform.
@@ -178,25 +188,10 @@ def follow(
     nu, states = measure(geometry, T, length, dexterity.norm)
     if limits is not None:
         states = judge_poses(geometry, limits, T)
-    rates = (jacobian(geometry, T) @ trajectory.twists[:, :, None])[..., 0]  # d_dot = J (v, omega)
+    with np.errstate(invalid="ignore"):  # of a servo that does not reach
+        rates = (jacobian(geometry, T) @ trajectory.twists[:, :, None])[..., 0]  # q_dot = J (v, omega)
     speed = None if limits is None else limits.speed
-    return Motion(trajectory, leg_lengths(geometry, T), rates, nu, states, length, speed)
-
-
-@checked
-def judge_poses(geometry: Geometry, limits: LegLimits, poses: PoseLike) -> NDArray[np.int8]:
-    """A ``PoseState`` (k,) for each of the poses.
-
-    Raises:
-        InvalidTarget: Not poses.
-    """
-    T = as_poses(poses)
-    states, nu = np.empty(len(T), dtype=np.int8), np.empty(len(T))
-    b, m, pairs = geometry.arrays
-    load_kernels().judge_poses(
-        b, m, limits.sockets(geometry), limits.array, pairs, T, geometry.platform_radius, 0, states, nu
-    )
-    return states
+    return Motion(trajectory, inverse(geometry, T).coordinates, rates, nu, states, length, speed)
 
 
 def _differences(times: Array, poses: Array) -> Array:

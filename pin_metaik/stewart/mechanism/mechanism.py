@@ -10,7 +10,7 @@ from pin_metaik.stewart.kinematics.conditioning import Dexterity
 from pin_metaik.stewart.mechanism.task import DesignTask
 from pin_metaik.stewart.mechanism.units import LENGTHS
 from pin_metaik.stewart.platform.geometry import Geometry
-from pin_metaik.stewart.platform.limits import LegLimits
+from pin_metaik.stewart.platform.limits import Limits
 from pin_metaik.stewart.workspace.grid import Grid
 from pin_metaik.stewart.workspace.surveying import Watch, survey
 from pin_metaik.stewart.workspace.workspace import Workspace
@@ -24,7 +24,7 @@ class Mechanism:
     Attributes:
         name: Its name.
         geometry: Joints and legs.
-        limits: What the legs allow.
+        limits: What the legs allow: ``LegLimits`` for slides, ``ServoLimits`` for servos.
         grid: Where its workspace is looked for.
         dexterity: How its dexterity is measured.
         task: How it is designed; None for a mechanism that is only analysed.
@@ -34,11 +34,12 @@ class Mechanism:
 
     Raises:
         InvalidSetting: No name, or no unit of that name.
+        InvalidGeometry: Limits of another kind of legs.
     """
 
     name: str
     geometry: Geometry
-    limits: LegLimits
+    limits: Limits
     grid: Grid = field(default=Grid())
     dexterity: Dexterity = field(default=Dexterity())
     task: DesignTask | None = None
@@ -51,6 +52,7 @@ class Mechanism:
             raise InvalidSetting(f"a mechanism has a name, got {self.name!r}")
         if self.unit not in LENGTHS:
             raise InvalidSetting(f"unit is one of {', '.join(LENGTHS)}, got {self.unit!r}")
+        self.limits.fit(self.geometry)
 
     @property
     def metres(self) -> float:

@@ -18,9 +18,11 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import array, checked, checked_as, number, shown
+from pin_metaik.arguments import array, checked, checked_as, instance, number, shown
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
+from pin_metaik.stewart.platform.actuation import SLIDES, Actuation
+from pin_metaik.stewart.platform.servos import Servos
 
 FEWEST_LEGS, MOST_LEGS = 3, 6
 
@@ -45,10 +47,12 @@ class Geometry:
             circle if not given.
         base: The joints B1, B2 ... as points x, y, z, at any heights; None: they are on a circle.
         platform: The joints M1, M2 ... likewise, in the platform's frame.
+        servos: What moves the legs, if they are not slides: a servo for each, whose shaft stands in its base joint.
 
     Raises:
         InvalidGeometry: A radius that is not above zero, angles out of order, joints in one place, a leg to a joint
-            that does not exist, a joint without a leg, two legs between the same joints, or not 3 to 6 legs.
+            that does not exist, a joint without a leg, two legs between the same joints, not 3 to 6 legs, or more or
+            fewer servos than legs.
     """
 
     base_radius: float = 0.0
@@ -59,6 +63,7 @@ class Geometry:
     reference: Point = (0.0, 0.0, 0.0)
     base: tuple[Point, ...] | None = None
     platform: tuple[Point, ...] | None = None
+    servos: Servos | None = None
 
     def __post_init__(self) -> None:
         for side, letter in (("base", "B"), ("platform", "M")):
@@ -66,6 +71,8 @@ class Geometry:
                 object.__setattr__(self, name, value)
         legs = _legs(self.legs, len(self.base_joints), len(self.platform_joints))
         object.__setattr__(self, "legs", legs)
+        instance((Servos, type(None)), servos=self.servos)
+        self.actuation.check(self.n)
 
     @classmethod
     @checked_as(InvalidGeometry)
@@ -75,6 +82,7 @@ class Geometry:
         platform: ArrayLike,
         legs: Sequence[tuple[int, int]] | None = None,
         reference: ArrayLike = (0.0, 0.0, 0.0),
+        servos: Servos | None = None,
     ) -> Geometry:
         """A platform with its joints anywhere.
 
@@ -83,6 +91,7 @@ class Geometry:
             platform: M1, M2 ... in the platform frame, m (joints, 3).
             legs: Which joins which; default: the first to the first, the second to the second ...
             reference: The point P that poses place, in the platform frame, m (3,).
+            servos: What moves the legs, if they are not slides.
 
         Raises:
             InvalidGeometry: Joints or legs that cannot be those of a platform.
@@ -95,12 +104,17 @@ class Geometry:
             raise InvalidGeometry(f"say which legs join which of {len(sides[0])} and {len(sides[1])} joints")
         joined = tuple((i, i) for i in range(len(sides[0]))) if legs is None else tuple(legs)
         place = tuple(array("reference", reference, 3, error=InvalidGeometry).tolist())
-        return cls(legs=joined, reference=place, base=sides[0], platform=sides[1])
+        return cls(legs=joined, reference=place, base=sides[0], platform=sides[1], servos=servos)
 
     @property
     def n(self) -> int:
         """Number of legs."""
         return len(self.legs)
+
+    @property
+    def actuation(self) -> Actuation:
+        """What moves the legs: slides, or servos."""
+        return self.servos or SLIDES
 
     @property
     def type(self) -> str:

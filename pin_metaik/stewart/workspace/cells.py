@@ -8,8 +8,9 @@ import numpy as np
 
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kernels.loading import load_bounds
+from pin_metaik.stewart.kinematics.judging import arguments_of
 from pin_metaik.stewart.platform.geometry import Geometry
-from pin_metaik.stewart.platform.limits import LegLimits
+from pin_metaik.stewart.platform.limits import Limits
 from pin_metaik.stewart.workspace.grid import Grid
 
 COVER = 12
@@ -56,7 +57,7 @@ class Cells:
         return self.places * len(self.rpy)
 
 
-def cells_of(grid: Grid, geometry: Geometry, limits: LegLimits) -> Cells:
+def cells_of(grid: Grid, geometry: Geometry, limits: Limits) -> Cells:
     """The cells of a grid; ranges left open become as wide as the limits leave P room.
 
     Where they leave it none, as wide as the longest legs could sweep: every pose will be found to be forbidden.
@@ -88,27 +89,26 @@ def finer_cells(grid: Grid, box: Array, volume: float) -> Cells:
     return _laid(grid, part, (int(counts[0]), int(counts[1]), int(counts[2])))
 
 
-def room(grid: Grid, geometry: Geometry, limits: LegLimits) -> Array | None:
+def room(grid: Grid, geometry: Geometry, limits: Limits) -> Array | None:
     """A box (2, 3) that holds every position within the limits, in any orientation of the grid and within its ranges.
 
-    With the lengths of the legs alone it is exact. None: there is no such position, proved but for rounding.
+    With the lengths of slides alone it is exact. None: there is no such position, proved but for rounding.
     """
     R = grid.rotations
     turned = np.ascontiguousarray(geometry.m @ R.transpose(0, 2, 1))  # (o, n, 3)
     spheres = geometry.b - turned
     bounds, box = load_bounds(), np.empty((2, 3))
-    bounds.reach(spheres, limits.array, _ends(grid, spheres), box)
+    base, _, sockets, most, servos, pairs = arguments_of(geometry, limits)
+    bounds.reach(spheres, most, _ends(grid, spheres), box)
     if (box[0] > box[1]).any():
         return None
     if not limits.beyond_lengths:
         return box
-    base, _, pairs = geometry.arrays
-    sockets = limits.sockets(geometry)
     turned_sockets = np.ascontiguousarray(sockets[1] @ R.transpose(0, 2, 1))
     counts = np.full(3, COVER)
     while True:
         part = np.empty((2, 3))
-        if not bounds.cover(base, turned, sockets, turned_sockets, limits.array, pairs, box, counts, part):
+        if not bounds.cover(base, turned, sockets, turned_sockets, most, servos, pairs, box, counts, part):
             return None
         if (np.ptp(part, axis=0) >= SHRINKS * np.ptp(box, axis=0)).all():
             return part
@@ -135,10 +135,11 @@ def _ends(grid: Grid, spheres: Array) -> Array:
     return ends
 
 
-def _sweep(grid: Grid, geometry: Geometry, limits: LegLimits) -> Array:
+def _sweep(grid: Grid, geometry: Geometry, limits: Limits) -> Array:
     """The box (2, 3) of P within ``longest`` of every b_i - R m_i, or of the middle of these where there is none."""
     spheres = geometry.b - geometry.m @ grid.rotations.transpose(0, 2, 1)  # (o, n, 3)
-    low = (spheres.max(axis=1) - limits.longest).min(axis=0)
-    high = np.maximum((spheres.min(axis=1) + limits.longest).max(axis=0), low)
+    _, longest = limits.lengths(geometry)
+    low = (spheres.max(axis=1) - longest).min(axis=0)
+    high = np.maximum((spheres.min(axis=1) + longest).max(axis=0), low)
     low[2] = _ends(grid, spheres)[0, 2]
     return np.array([low, np.maximum(high, low)])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from pin_metaik.arguments import checked
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kinematics.conditioning import measure
 from pin_metaik.stewart.kinematics.golden import golden_section
+from pin_metaik.stewart.kinematics.jacobian import transmission
 from pin_metaik.stewart.kinematics.trajectory import Trajectory, between
 from pin_metaik.stewart.platform.geometry import Geometry
 from pin_metaik.stewart.platform.limits import PoseState
@@ -22,7 +23,7 @@ TOUCHES = 1e-7  # nu at which a trajectory touches a singular surface: what a mi
 
 @dataclass(frozen=True, eq=False)
 class Singularities:
-    """The singular poses of a workspace.
+    """The singular poses of a workspace, and how near it comes to those of the first kind.
 
     Attributes:
         verdict: Whether the mechanism holds its platform throughout.
@@ -31,6 +32,9 @@ class Singularities:
             surface passes within half a cell of each.
         nearest: The pose reached with the lowest nu (4, 4), and ...
         nu: ... its nu; 0 if it is singular.
+        transmission: The least transmission of a servo at the poses reached: 0 in a singularity of the first kind,
+            where a rod is in line with its horn and its two branches meet; 1 for slides, which have none.
+        weakest: Where that is, a pose (4, 4); None for slides.
     """
 
     verdict: Verdict
@@ -38,6 +42,8 @@ class Singularities:
     crossings: Array
     nearest: Array
     nu: float
+    transmission: float = 1.0
+    weakest: Array | None = None
 
 
 @checked
@@ -53,13 +59,18 @@ def singularities(workspace: Workspace) -> Singularities:
         there = here + (np.arange(states.ndim) == axis)
         ends = (workspace.poses_of(_flat(index, steps)) for index in (here, there))
         crossings += [between(first, last, 0.5)[None] for first, last in zip(*ends, strict=True)]
-    return Singularities(
+    found = Singularities(
         workspace.verdict,
         workspace.poses(workspace.states == PoseState.SINGULAR),
         np.concatenate(crossings),
         workspace.worst,
         float(workspace.nu[workspace.reached].min()),
     )
+    if workspace.geometry.servos is None:
+        return found
+    poses = workspace.poses(workspace.reached)
+    least = transmission(workspace.geometry, poses).min(axis=1)
+    return replace(found, transmission=float(least.min()), weakest=poses[least.argmin()])
 
 
 def _flat(index: NDArray[np.int64], steps: tuple[int, int, int]) -> NDArray[np.int64]:
@@ -69,7 +80,7 @@ def _flat(index: NDArray[np.int64], steps: tuple[int, int, int]) -> NDArray[np.i
 
 @dataclass(frozen=True, eq=False)
 class Crossing:
-    """A singular pose on a trajectory.
+    """A singular pose on a trajectory: one in which the platform can move while its legs are held.
 
     Attributes:
         time: When, s.
@@ -94,7 +105,7 @@ def crossings(geometry: Geometry, trajectory: Trajectory) -> list[Crossing]:
     regular = states == PoseState.POSITIVE
     holds = nu > 0.0
     found = []
-    for k in np.flatnonzero(~holds):
+    for k in np.flatnonzero(states == PoseState.SINGULAR):
         ends = (*regular[:k][holds[:k]][-1:], *regular[k:][holds[k:]][:1])  # the signs before and after, if there are
         found.append(Crossing(float(times[k]), trajectory.poses[k], len(ends) == 2 and bool(ends[0] != ends[1])))
     for k in np.flatnonzero((regular[:-1] != regular[1:]) & holds[:-1] & holds[1:]):

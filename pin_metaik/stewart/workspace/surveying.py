@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from pin_metaik.arguments import checked
 from pin_metaik.interrupts import Interrupted
 from pin_metaik.optimize.space import Array
-from pin_metaik.stewart.kernels.loading import load_kernels
+from pin_metaik.stewart.kernels.loading import load_judging
 from pin_metaik.stewart.kinematics.conditioning import DEFAULT, Dexterity, best_length, measure
+from pin_metaik.stewart.kinematics.judging import arguments_of
 from pin_metaik.stewart.platform.geometry import Geometry
-from pin_metaik.stewart.platform.limits import LegLimits
+from pin_metaik.stewart.platform.limits import Limits
 from pin_metaik.stewart.workspace.cells import Cells, cells_of, finer_cells, room
 from pin_metaik.stewart.workspace.grid import Grid
 from pin_metaik.stewart.workspace.workspace import EmptyWorkspace, Workspace
@@ -37,7 +38,7 @@ SPARE = 1.2
 @checked
 def survey(
     geometry: Geometry,
-    limits: LegLimits,
+    limits: Limits,
     grid: Grid | Cells | None = None,
     dexterity: Dexterity = DEFAULT,
     *,
@@ -58,7 +59,7 @@ def survey(
 
     Raises:
         EmptyWorkspace: No pose of the grid is within the limits; it says whether that is proved for all between them.
-        InvalidGeometry: The home of the limits gives a joint no axis.
+        InvalidGeometry: Limits of another kind of legs, or a home that gives a joint no axis.
         Interrupted: Ctrl-C, once a pose was reached; its ``result`` is the workspace as far as it was seen.
     """
     where = grid or Grid()
@@ -76,7 +77,7 @@ def survey(
 
 def explored(
     geometry: Geometry,
-    limits: LegLimits,
+    limits: Limits,
     grid: Grid,
     dexterity: Dexterity,
     least: int,
@@ -108,7 +109,7 @@ def explored(
 
 
 def judged(
-    geometry: Geometry, limits: LegLimits, cells: Cells, dexterity: Dexterity, watch: Watch | None = None
+    geometry: Geometry, limits: Limits, cells: Cells, dexterity: Dexterity, watch: Watch | None = None
 ) -> Workspace:
     """Cells judged.
 
@@ -140,7 +141,7 @@ def with_best_length(workspace: Workspace) -> Workspace:
 
 def judge_cells(
     geometry: Geometry,
-    limits: LegLimits,
+    limits: Limits,
     cells: Cells,
     length: float,
     dexterity: Dexterity,
@@ -149,12 +150,11 @@ def judge_cells(
     watch: Watch | None = None,
 ) -> None:
     """Fill in states and nu (nx, ny, nz, o), slab by slab along x."""
-    kernels = load_kernels()
+    kernels = load_judging()
     R = cells.rotations  # (o, 3, 3)
-    sockets = limits.sockets(geometry)  # (2, n, 3)
+    base, _, sockets, most, servos, pairs = arguments_of(geometry, limits)
     turned = np.ascontiguousarray(geometry.m @ R.transpose(0, 2, 1))  # (o, n, 3)
     turned_sockets = np.ascontiguousarray(sockets[1] @ R.transpose(0, 2, 1))
-    base, _, pairs = geometry.arrays
     nx, *slab = cells.shape
     thickness = max(1, CHUNK // int(np.prod(slab)))
     for first in range(0, nx, thickness):
@@ -164,7 +164,8 @@ def judge_cells(
             turned,
             sockets,
             turned_sockets,
-            limits.array,
+            most,
+            servos,
             pairs,
             cells.xs[part],
             cells.ys,

@@ -14,7 +14,7 @@ from pin_metaik.errors import InvalidGeometry, InvalidSetting
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kinematics.conditioning import Dexterity
 from pin_metaik.stewart.platform.geometry import MOST_LEGS, Geometry
-from pin_metaik.stewart.platform.limits import LegLimits, PoseState
+from pin_metaik.stewart.platform.limits import Limits, PoseState
 from pin_metaik.stewart.workspace.cells import Cells
 
 
@@ -69,7 +69,7 @@ class Workspace:
     """
 
     geometry: Geometry
-    limits: LegLimits
+    limits: Limits
     cells: Cells
     dexterity: Dexterity
     length: float

@@ -1,0 +1,105 @@
+"""How the legs of a platform are actuated: what the protocol of a leg is, and legs that are slides.
+
+Every leg ends in a straight link between two joints. The link of a slide begins in the base joint and changes its
+length; that of a servo is a rod of fixed length, which begins at the tip of a horn. Whatever is said about a platform
+(rates, dexterity, distances, pictures) is said about these links, and about the coordinate q that moves each: a length
+in m or an angle in rad.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.optimize.space import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Links:
+    """The legs of a platform at poses: the answer of inverse kinematics. Arrays are in the base frame.
+
+    Attributes:
+        coordinates: q of each leg (k, n): lengths in m or servo angles in rad; NaN where the leg cannot reach.
+        starts: Where the links begin, m (k, n, 3): base joints, or tips of horns.
+        vectors: The links from there to the platform joints, m (k, n, 3). Of a rod that cannot reach: the way it would
+            have to go, from the tip of the horn at its nearest.
+        pushes: By how much the length of the link would change with q if its end were held, sign reversed (k, n): 1 for
+            a slide, horn times the transmission for a servo, in m/rad.
+        missing: What a link is too short by, m (k, n); below zero what it is too long by; 0 where it reaches.
+    """
+
+    coordinates: Array
+    starts: Array
+    vectors: Array
+    pushes: Array
+    missing: Array
+
+    @property
+    def reached(self) -> NDArray[np.bool_]:
+        """Whether every leg reaches its platform joint, whatever its limits are (k,)."""
+        reached: NDArray[np.bool_] = (self.missing == 0.0).all(axis=1)
+        return reached
+
+    @property
+    def why(self) -> str:
+        """Which leg misses its platform joint at the first pose, and by how much; empty if none does."""
+        leg = int(np.abs(self.missing[0]).argmax())
+        short = float(self.missing[0, leg])
+        if short == 0.0:
+            return ""
+        return f"the rod of leg {leg + 1} is {abs(short):.6g} m too {'short' if short > 0.0 else 'long'}"
+
+
+@runtime_checkable
+class Actuation(Protocol):
+    """What moves the legs: between legs from base to platform joint, their links and their coordinates."""
+
+    upright: tuple[float, float, float]
+    """The axis that a link's first joint has by default, in the frame ``in_first_joint`` uses."""
+
+    def check(self, legs: int) -> None:
+        """Raise InvalidGeometry unless it can actuate so many legs."""
+
+    def span(self) -> tuple[float, float] | None:
+        """Least and greatest distance in m that a leg can have by its parts alone; None: its limits say."""
+
+    def links(self, b: Array, v: Array) -> Links:
+        """Inverse kinematics, from base joints b (n, 3) and vectors v (k, n, 3) to the platform joints."""
+
+    def held(self, b: Array, q: Array) -> tuple[Array, Array]:
+        """Where links begin (k or 1, n, 3) and how long they are (k, n) while coordinates q (k, n) are held."""
+
+    def in_first_joint(self, links: Links) -> Array:
+        """Unit directions (k, n, 3) of links in the frame that carries their first joints."""
+
+
+@dataclass(frozen=True)
+class Slides:
+    """Legs that change their length: linear actuators between base and platform joints (6-UPS)."""
+
+    upright = (0.0, 0.0, 1.0)
+
+    def check(self, legs: int) -> None:
+        """Any number of legs may be slides."""
+
+    def span(self) -> None:
+        """Their limits say how long they are."""
+
+    def links(self, b: Array, v: Array) -> Links:
+        """The legs are the links; there is always a length."""
+        lengths = np.linalg.norm(v, axis=-1)
+        return Links(lengths, np.broadcast_to(b, v.shape), v, np.ones_like(lengths), np.zeros_like(lengths))
+
+    def held(self, b: Array, q: Array) -> tuple[Array, Array]:
+        """From the base joints, as long as their coordinates say."""
+        return b[None], q
+
+    def in_first_joint(self, links: Links) -> Array:
+        """Base joints stand still."""
+        return links.vectors / np.linalg.norm(links.vectors, axis=-1, keepdims=True)
+
+
+SLIDES = Slides()
