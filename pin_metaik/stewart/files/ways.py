@@ -75,7 +75,8 @@ def _numbers(path: str | Path, line: int, row: list[str], names: list[str]) -> l
 def save_motion(motion: Motion, path: str | Path, metres: float = 1.0) -> Path:
     """Write what the legs do along a trajectory to a CSV file: a row a sample.
 
-    The columns are time in s, the lengths d1 ... and rates v1 ... of the legs, nu, and the state of the pose.
+    The columns are time in s, the lengths d1 ... and rates v1 ... of the legs, nu, and the state of the pose. Of servos
+    they are the angles a1 ... and rates w1 ..., in degrees and degrees a second; nan where a rod does not reach.
 
     Args:
         motion: What ``follow`` found.
@@ -86,9 +87,10 @@ def save_motion(motion: Motion, path: str | Path, metres: float = 1.0) -> Path:
         CannotWrite: It cannot be written.
     """
     path = writable(path)
-    n = motion.lengths.shape[1]
-    names = ["time", *(f"d{i}" for i in range(1, n + 1)), *(f"v{i}" for i in range(1, n + 1)), "nu", "state"]
-    legs: list[Array] = [*(motion.lengths.T / metres), *(motion.rates.T / metres)]
+    n = motion.coordinates.shape[1]
+    (what, rate), one = (("d", "v"), metres) if motion.geometry.servos is None else (("a", "w"), radians(1.0))
+    names = ["time", *(f"{what}{i}" for i in range(1, n + 1)), *(f"{rate}{i}" for i in range(1, n + 1)), "nu", "state"]
+    legs: list[Array] = [*(motion.coordinates.T / one), *(motion.rates.T / one)]
     table = np.column_stack([motion.trajectory.times, *legs, motion.nu])
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")

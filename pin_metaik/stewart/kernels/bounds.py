@@ -224,7 +224,7 @@ def ruled_out(
     allowed where the end of its leg lies in a cone. Of servos only their angles and the lengths of rods are looked at.
     """
     if servos is not None:
-        for i in range(legs.shape[0]):
+        for i in range(legs.shape[0]):  # noqa: SIM110  # numba has no any() of a generator
             if arc_misses(servos, i, legs, radius):
                 return True
         return False

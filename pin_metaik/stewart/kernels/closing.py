@@ -20,9 +20,7 @@ HORN, ROD, BRANCH, MIDDLE_COS, MIDDLE_SIN, LEAST_COS = 9, 10, 11, 12, 13, 14
 @inline
 def dot(servos: Floats, i: int, first: int, legs: Floats) -> float:
     """A direction of servo i times leg i."""
-    return float(
-        servos[i, first] * legs[i, 0] + servos[i, first + 1] * legs[i, 1] + servos[i, first + 2] * legs[i, 2]
-    )
+    return float(servos[i, first] * legs[i, 0] + servos[i, first + 1] * legs[i, 1] + servos[i, first + 2] * legs[i, 2])
 
 
 @inline
@@ -77,9 +75,7 @@ def close(
         starts[i, e] = base[i, e] + tip
         legs[i, e] -= tip
         axes[i, e] = (
-            sockets[i, 0] * (cos * u + sin * w)
-            + sockets[i, 1] * (cos * w - sin * u)
-            + sockets[i, 2] * servos[i, e + 6]
+            sockets[i, 0] * (cos * u + sin * w) + sockets[i, 1] * (cos * w - sin * u) + sockets[i, 2] * servos[i, e + 6]
         )
     lengths[i], divisors[i] = rod, horn * sine
     return CLOSED
@@ -108,4 +104,4 @@ def arc_misses(servos: Floats, i: int, legs: Floats, radius: float) -> bool:
             far = r * r + horn * horn - 2.0 * horn * (ahead * least - aside * half)
     if near + along * along > (rod + radius) * (rod + radius):
         return True
-    return rod > radius and far + along * along < (rod - radius) * (rod - radius)
+    return bool(rod > radius and far + along * along < (rod - radius) * (rod - radius))

@@ -136,7 +136,8 @@ def measure(
 ) -> tuple[float, float]:
     """The nu of a pose and the sign of det J, from its links (n, 3), what they are divided by and R m_i (n, 3).
 
-    Divided by its length a link becomes the row of a slide; see ``closing`` for that of a servo. ``work`` is (2 n + 2, 6): room for J, a diagonal, a column and the rotated rows.
+    Divided by its length a link becomes the row of a slide; see ``closing`` for that of a servo.
+    ``work`` is (2 n + 2, 6): room for J, a diagonal, a column and the rotated rows.
     """
     n = legs.shape[0]
     J, diagonal, column = work[:n], work[n], work[n + 1]
@@ -235,7 +236,7 @@ def reach(
     lengths: Floats,
     divisors: Floats,
 ) -> int:
-    """State of a pose by its legs (n, 3) alone; if they reach, the links in their place and all that ``judge`` wants."""
+    """State of a pose by its legs (n, 3) alone; if they reach, then the links and all that ``judge`` wants."""
     for i in range(base.shape[0]):
         if servos is None:
             square = legs[i, 0] * legs[i, 0] + legs[i, 1] * legs[i, 1] + legs[i, 2] * legs[i, 2]
@@ -336,9 +337,7 @@ def turn(pose: Floats, points: Floats, out: Floats) -> None:
             out[i, r] = pose[r, 0] * points[i, 0] + pose[r, 1] * points[i, 1] + pose[r, 2] * points[i, 2]
 
 
-@jit(
-    "void(f8[:,::1], f8[:,::1], f8[:,:,::1], f8[::1], f8[:,::1]?, i8[:,::1], f8[:,:,::1], f8, i8, i1[::1], f8[::1])"
-)
+@jit("void(f8[:,::1], f8[:,::1], f8[:,:,::1], f8[::1], f8[:,::1]?, i8[:,::1], f8[:,:,::1], f8, i8, i1[::1], f8[::1])")
 def judge_poses(
     base: Floats,
     arms: Floats,

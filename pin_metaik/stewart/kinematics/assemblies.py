@@ -124,10 +124,10 @@ def all_forward(geometry: Geometry, coordinates: ArrayLike, rng: int | np.random
 
 
 def _held(geometry: Geometry, q: Array) -> tuple[Geometry, Array]:
-    """A platform whose servos are held at angles (1, 6): one of slides from the tips of its horns, and their lengths."""
+    """A platform whose servos are held at angles (1, 6): slides from the tips of its horns, and their lengths."""
     (tips,), rods = geometry.actuation.held(geometry.b, q)
     legs = tuple((i, platform) for i, (_, platform) in enumerate(geometry.legs))
-    parts = {"base_radius": 0.0, "base_angles": (), "base": tuple(map(tuple, tips.tolist()))}
+    parts: dict[str, Any] = {"base_radius": 0.0, "base_angles": (), "base": tuple(map(tuple, tips.tolist()))}
     return replace(geometry, legs=legs, servos=None, **parts), np.array(rods)
 
 

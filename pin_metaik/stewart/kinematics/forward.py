@@ -70,10 +70,12 @@ class Forward:
 
 @checked
 def forward(geometry: Geometry, coordinates: ArrayLike, start: PoseLike | None = None) -> Forward:
-    """The pose nearest to the start, in Newton's sense, at which the legs have these lengths, or their servos angles.
+    """The pose nearest to the start, in Newton's sense, at which the legs have these lengths or their servos angles.
 
-    On which branch a servo is then, its angle does not say. With fewer than six legs the coordinates leave freedoms: steps are the shortest ones, a radian counting as a platform
-    radius.
+    On which branch a servo is then, its angle does not say.
+
+    With fewer than six legs the coordinates leave freedoms: steps are the shortest ones, a radian counting as a
+    platform radius.
 
     Args:
         geometry: The platform.
@@ -93,11 +95,11 @@ def forward(geometry: Geometry, coordinates: ArrayLike, start: PoseLike | None =
 
 def newton(geometry: Geometry, q: Array, T: Array) -> Forward:
     """Newton from poses (k, 4, 4), in place, to coordinates (k, n)."""
-    starts, d = (np.require(part, requirements="CW") for part in geometry.actuation.held(geometry.b, q))
+    starts, d = (np.require(part, requirements=("C", "W")) for part in geometry.actuation.held(geometry.b, q))
     iterations, errors, states = np.zeros(len(q), dtype=np.int64), np.zeros(len(q)), np.zeros(len(q), dtype=np.int8)
     tolerance = TOLERANCE * float(d.max(initial=0.0))
-    arms = geometry.arrays[1]
-    load_newton().newton(starts, arms, d, geometry.platform_radius, tolerance, ITERATIONS, T, iterations, errors, states)
+    arms, scale = geometry.arrays[1], geometry.platform_radius
+    load_newton().newton(starts, arms, d, scale, tolerance, ITERATIONS, T, iterations, errors, states)
     return Forward(T, states, errors, iterations)
 
 

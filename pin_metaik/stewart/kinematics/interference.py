@@ -25,6 +25,6 @@ def leg_distances(geometry: Geometry, poses: PoseLike) -> Array:
     T = as_poses(poses)
     links, (_, _, pairs) = inverse(geometry, T), geometry.arrays
     distances = np.empty((len(T), len(pairs)))
-    starts, vectors = (np.require(part, requirements="CW") for part in (links.starts, links.vectors))
+    starts, vectors = (np.require(part, requirements=("C", "W")) for part in (links.starts, links.vectors))
     load_judging().distances(starts, vectors, pairs, distances)
     return distances if is_many(poses) else distances[0]

@@ -116,6 +116,7 @@ class Motion:
     """What the legs do along a trajectory.
 
     Attributes:
+        geometry: The platform.
         trajectory: The poses over time.
         coordinates: Of the legs (k, n): lengths in m, or angles of servos in rad, NaN where a rod does not reach.
         rates: Of the legs, m/s or rad/s (k, n).
@@ -125,6 +126,7 @@ class Motion:
         speed: The fastest that a leg may be, m/s or rad/s; None if that is not limited.
     """
 
+    geometry: Geometry
     trajectory: Trajectory
     coordinates: Array
     rates: Array
@@ -191,7 +193,7 @@ def follow(
     with np.errstate(invalid="ignore"):  # of a servo that does not reach
         rates = (jacobian(geometry, T) @ trajectory.twists[:, :, None])[..., 0]  # q_dot = J (v, omega)
     speed = None if limits is None else limits.speed
-    return Motion(trajectory, inverse(geometry, T).coordinates, rates, nu, states, length, speed)
+    return Motion(geometry, trajectory, inverse(geometry, T).coordinates, rates, nu, states, length, speed)
 
 
 def _differences(times: Array, poses: Array) -> Array:

@@ -8,7 +8,7 @@ from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.stewart.kinematics.conditioning import Dexterity
 from pin_metaik.stewart.mechanism.task import DesignTask
-from pin_metaik.stewart.mechanism.units import LENGTHS
+from pin_metaik.stewart.mechanism.units import ANGLES, LENGTHS, Coordinate
 from pin_metaik.stewart.platform.geometry import Geometry
 from pin_metaik.stewart.platform.limits import Limits
 from pin_metaik.stewart.workspace.grid import Grid
@@ -58,6 +58,13 @@ class Mechanism:
     def metres(self) -> float:
         """How many m one of its unit of length is."""
         return float(LENGTHS[self.unit].factor)
+
+    @property
+    def coordinate(self) -> Coordinate:
+        """How the coordinates of its legs are shown: lengths in its unit, or angles of servos in degrees."""
+        if self.geometry.servos is None:
+            return Coordinate("length", self.unit, self.metres)
+        return Coordinate("angle", "deg", float(ANGLES["deg"].factor))
 
     @checked
     def survey(self, *, watch: Watch | None = None) -> Workspace:

@@ -35,7 +35,7 @@ class DesignTask:
         threshold: Of nu, for the index ``"lci"``.
         weights: Of dexterity and workspace. The paper prints 78 % and 12 %; the second is read as 22 %.
         cube: Side in m of a cube whose volume counts as 1. The paper does not say how it made volumes comparable;
-            None: twice the longest stroke within the ranges.
+            None: twice the longest stroke within the ranges; with servos, four horns.
         least_workspace: What V / cube^3 must reach. With much weight on dexterity the best workspace may otherwise be a
             speck: for stroke 150 and the paper's weights one of 6 cm3 beats 2800.
         joint_gap: Least distance between the centres of neighbouring joints, m.

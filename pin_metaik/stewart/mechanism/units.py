@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from decimal import Context, Decimal
+from typing import NamedTuple
 
 CONTEXT = Context(prec=50)
 PI = Decimal("3.14159265358979323846264338327950288419716939937511")
@@ -50,3 +51,11 @@ def plain(number: Decimal) -> str:
 LENGTHS = {name: Unit(name, Decimal(factor)) for name, factor in (("m", "1"), ("cm", "0.01"), ("mm", "0.001"))}
 ANGLES = {"rad": Unit("rad", Decimal(1)), "deg": Unit("deg", CONTEXT.divide(PI, Decimal(180)))}
 PURE = Unit("", Decimal(1))
+
+
+class Coordinate(NamedTuple):
+    """How the coordinates of legs are shown to people: what they are called, in which unit, and how much that is."""
+
+    word: str
+    unit: str
+    one: float

@@ -99,7 +99,13 @@ class Slides:
 
     def in_first_joint(self, links: Links) -> Array:
         """Base joints stand still."""
-        return links.vectors / np.linalg.norm(links.vectors, axis=-1, keepdims=True)
+        return directions(links.vectors, self.upright)
+
+
+def directions(vectors: Array, otherwise: tuple[float, float, float]) -> Array:
+    """Unit vectors (..., 3); those of no length become another direction."""
+    d = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.divide(vectors, d, out=np.full_like(vectors, otherwise), where=d > 0.0)
 
 
 SLIDES = Slides()

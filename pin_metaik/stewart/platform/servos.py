@@ -186,4 +186,4 @@ def _units(name: str, vectors: ArrayLike) -> Array:
     sizes = np.linalg.norm(given, axis=1, keepdims=True)
     for leg in np.flatnonzero(~(sizes[:, 0] > 0.0)):
         raise InvalidGeometry(f"{name} of servos: that of servo {leg + 1} has no direction")
-    return given / sizes
+    return np.asarray(given / sizes)

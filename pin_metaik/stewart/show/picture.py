@@ -12,10 +12,12 @@ from pin_metaik.arguments import checked, instance
 from pin_metaik.errors import InvalidSetting, MissingExtra
 from pin_metaik.optimize.space import Array
 from pin_metaik.output import writable
-from pin_metaik.stewart.kinematics.inverse import leg_vectors
+from pin_metaik.stewart.kinematics.forward import level
+from pin_metaik.stewart.kinematics.inverse import inverse
 from pin_metaik.stewart.kinematics.trajectory import Motion
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.platform.geometry import Geometry, on_circle
+from pin_metaik.stewart.platform.limits import LegLimits
 from pin_metaik.stewart.platform.poses import PoseLike, one_pose, pose_at
 from pin_metaik.stewart.show.body import body_of, draw_body, polygons
 from pin_metaik.stewart.synthesis.design import Designed
@@ -120,9 +122,13 @@ def draw_above(mechanism: Mechanism, pose: PoseLike | None = None) -> Figure:
     figure = _figure((6.4, 6.0))
     axes: Any = figure.add_subplot(aspect="equal")
     moved = T[:3, 3] + geometry.platform_joints @ T[:3, :3].T
-    for i, (b, v) in enumerate(zip(geometry.b, leg_vectors(geometry, T[None])[0], strict=True), start=1):
-        axes.plot(*(scale * np.array([b, b + v])[:, :2]).T, color=ROD, lw=1.6)
-        axes.text(*(scale * (b + 0.5 * v)[:2]), f"{i}", fontsize=8, color=STEEL, ha="center", va="center", bbox=TAG)
+    for i, (b, knee, end) in enumerate(legs_at(mechanism, T), start=1):
+        if geometry.servos is not None:
+            axes.plot(*(scale * np.array([b, knee])[:, :2]).T, color=STEEL, lw=4, solid_capstyle="round")
+        begin = b if geometry.servos is None else knee
+        axes.plot(*(scale * np.array([begin, end])[:, :2]).T, color=ROD, lw=1.6)
+        middle = scale * 0.5 * (begin + end)[:2]
+        axes.text(*middle, f"{i}", fontsize=8, color=STEEL, ha="center", va="center", bbox=TAG)
     base_ring, moving_ring = _rings(geometry)
     aside = 0.07 * (geometry.base_radius + geometry.platform_radius)
     sides = ((geometry.base_joints, base_ring, "B", STEEL), (moved, T[:3, 3] + moving_ring @ T[:3, :3].T, "M", PLATE))
@@ -145,27 +151,28 @@ def draw_above(mechanism: Mechanism, pose: PoseLike | None = None) -> Figure:
 
 @checked
 def draw_motion(motion: Motion, mechanism: Mechanism) -> Figure:
-    """What the legs do along a trajectory: their lengths and rates over time with their limits, and dexterity.
+    """What the legs do along a trajectory: their coordinates and rates over time with their limits, and dexterity.
 
     Args:
         motion: What ``follow`` found.
-        mechanism: Whose legs they are, for its limits and its unit of length.
+        mechanism: Whose legs they are, for its limits and its unit.
 
     Raises:
         MissingExtra: matplotlib is not installed.
     """
     figure = _figure((7.2, 7.2))
     panels = figure.subplots(3, sharex=True)
-    times, limits, scale = motion.trajectory.times, mechanism.limits, 1.0 / mechanism.metres
-    curves = ((scale * motion.lengths, "length", mechanism.unit), (scale * motion.rates, "rate", f"{mechanism.unit}/s"))
+    times, limits, (word, unit, one) = motion.trajectory.times, mechanism.limits, mechanism.coordinate
+    legs = "servos" if mechanism.geometry.servos else "legs"
+    curves = ((motion.coordinates / one, word, unit), (motion.rates / one, "rate", f"{unit}/s"))
     for axes, (values, what, unit) in zip(panels, curves, strict=False):
         for i, column in enumerate(values.T, start=1):
             axes.plot(times, column, lw=1.4, label=f"leg {i}")
-        axes.set_ylabel(f"{what} of legs ({unit})")
+        axes.set_ylabel(f"{what} of {legs} ({unit})")
     speeds = () if limits.speed is None else (-limits.speed, limits.speed)
-    for axes, ends in zip(panels, ((limits.shortest, limits.longest), speeds), strict=False):
+    for axes, ends in zip(panels, (limits.span, speeds), strict=False):
         for end in ends:
-            axes.axhline(scale * end, color=STEEL, ls="--", lw=1)
+            axes.axhline(end / one, color=STEEL, ls="--", lw=1)
     panels[2].plot(times, motion.nu, color=PLATE)
     panels[2].set_ylabel("dexterity nu")
     panels[2].set_xlabel("time (s)")
@@ -176,7 +183,7 @@ def draw_motion(motion: Motion, mechanism: Mechanism) -> Figure:
         axes.fill_between(times, 0, 1, where=bad, transform=axes.get_xaxis_transform(), color="#d0302020", step="mid")
     panels[0].legend(fontsize=8, ncols=6, loc="center")
     shaded = "; shaded: beyond a limit" if bad.any() else ""
-    panels[0].set_title(f"{mechanism.name}: legs along the way (dashed: limits{shaded})", fontsize=11)
+    panels[0].set_title(f"{mechanism.name}: {legs} along the way (dashed: limits{shaded})", fontsize=11)
     return figure
 
 
@@ -231,13 +238,24 @@ def _figure(size: tuple[float, float]) -> Figure:
 def _middle(mechanism: Mechanism, workspace: Workspace | None) -> Array:
     if workspace is not None:
         return pose_at(np.median(workspace.positions, axis=0))
-    limits, offset = mechanism.limits, mechanism.geometry.m - mechanism.geometry.b
-    square = (0.5 * (limits.shortest + limits.longest)) ** 2 - (offset[:, :2] ** 2).sum(axis=1).mean()
-    return pose_at((0.0, 0.0, np.sqrt(max(square, limits.shortest**2 / 4)) - offset[:, 2].mean()))
+    halfway = np.full((1, mechanism.geometry.n), 0.5 * sum(mechanism.limits.span))
+    return np.asarray(level(mechanism.geometry, halfway)[0])
+
+
+def legs_at(mechanism: Mechanism, T: Array) -> Array:
+    """Of each leg the base joint, the knee and the platform joint (n, 3, 3): a horn or a cylinder, then a rod."""
+    geometry = mechanism.geometry
+    links = inverse(geometry, T)
+    starts, vectors = links.starts[0], links.vectors[0]
+    knees = starts
+    if isinstance(mechanism.limits, LegLimits):
+        lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+        knees = starts + np.minimum(1.0, 0.9 * mechanism.limits.shortest / np.maximum(lengths, 1e-12)) * vectors
+    return np.stack((geometry.b, knees, starts + vectors), axis=1)
 
 
 def _mechanism(axes: Any, mechanism: Mechanism, T: Array, scale: float) -> None:
-    """Plates as polygons of their joints on their circles, legs as cylinder and rod, joints as dots."""
+    """Plates as polygons of their joints on their circles, legs as cylinder or horn and rod, joints as dots."""
     geometry = mechanism.geometry
     R, P = T[:3, :3], T[:3, 3]
     platform_joints = P + geometry.platform_joints @ R.T
@@ -247,13 +265,11 @@ def _mechanism(axes: Any, mechanism: Mechanism, T: Array, scale: float) -> None:
     ):
         axes.plot(*(scale * (at[:3, 3] + ring @ at[:3, :3].T)).T, color=colour, lw=1, alpha=0.6)
         _plate(axes, scale * joints, colour)
-    for i, (b, v) in enumerate(zip(geometry.b, leg_vectors(geometry, T)[0], strict=True), start=1):
-        share = min(1.0, 0.9 * mechanism.limits.shortest / max(float(np.linalg.norm(v)), 1e-12))
-        axes.plot(*(scale * np.array([b, b + share * v])).T, color=STEEL, lw=4, solid_capstyle="round")
-        axes.plot(*(scale * np.array([b + share * v, b + v])).T, color=ROD, lw=2.2, solid_capstyle="round")
-        axes.text(
-            *(scale * (b + 0.45 * v)), f"{i}", fontsize=8, color=STEEL, ha="center", va="center", bbox=TAG, zorder=20
-        )
+    for i, (b, knee, end) in enumerate(legs_at(mechanism, T), start=1):
+        axes.plot(*(scale * np.array([b, knee])).T, color=STEEL, lw=4, solid_capstyle="round")
+        axes.plot(*(scale * np.array([knee, end])).T, color=ROD, lw=2.2, solid_capstyle="round")
+        place = scale * (b + 0.45 * (end - b) if geometry.servos is None else 0.5 * (knee + end))
+        axes.text(*place, f"{i}", fontsize=8, color=STEEL, ha="center", va="center", bbox=TAG, zorder=20)
     aside = 0.09 * (geometry.base_radius + geometry.platform_radius)
     for joints, name, colour in ((geometry.base_joints, "B", STEEL), (platform_joints, "M", PLATE)):
         axes.scatter(*(scale * joints).T, color=colour, s=26, depthshade=False)

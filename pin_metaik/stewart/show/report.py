@@ -9,14 +9,16 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
+from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kinematics.conditioning import conditioning
 from pin_metaik.stewart.kinematics.interference import leg_distances
-from pin_metaik.stewart.kinematics.inverse import leg_lengths
-from pin_metaik.stewart.kinematics.jacobian import jacobian
-from pin_metaik.stewart.kinematics.trajectory import Trajectory, follow, judge_poses
+from pin_metaik.stewart.kinematics.inverse import inverse
+from pin_metaik.stewart.kinematics.jacobian import jacobian, transmission
+from pin_metaik.stewart.kinematics.judging import judge_poses
+from pin_metaik.stewart.kinematics.trajectory import Trajectory, follow
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
-from pin_metaik.stewart.platform.geometry import MOST_LEGS
-from pin_metaik.stewart.platform.limits import PoseState
+from pin_metaik.stewart.platform.geometry import MOST_LEGS, Geometry
+from pin_metaik.stewart.platform.limits import LegLimits, PoseState, ServoLimits
 from pin_metaik.stewart.platform.poses import PoseLike, as_poses, one_pose
 from pin_metaik.stewart.synthesis.design import Designed
 from pin_metaik.stewart.workspace.singularity import crossings, singularities
@@ -29,6 +31,13 @@ Lines: TypeAlias = list[tuple[str, str]]
 def in_unit(mechanism: Mechanism, lengths: ArrayLike) -> str:
     """Lengths given in m, in the mechanism's unit."""
     return f"{', '.join(f'{value / mechanism.metres:.6g}' for value in np.ravel(lengths))} {mechanism.unit}"
+
+
+def of_legs(mechanism: Mechanism, coordinates: ArrayLike, per: str = "") -> str:
+    """Coordinates of legs in m or rad, or their rates ``per`` s, in the unit they are shown in; - where there is none."""
+    shown = mechanism.coordinate
+    values = ("-" if np.isnan(value) else f"{value / shown.one:.6g}" for value in np.ravel(coordinates))
+    return f"{', '.join(values)} {shown.unit}{per}"
 
 
 def describe(mechanism: Mechanism) -> Lines:
@@ -45,16 +54,37 @@ def describe(mechanism: Mechanism) -> Lines:
     if any(geometry.reference):
         lines.append(("reference", f"{in_unit(mechanism, geometry.reference)} from the centre of the platform"))
     lines.append(("joint gap", in_unit(mechanism, geometry.joint_gap)))
-    lines.append(("legs", in_unit(mechanism, (limits.shortest, limits.longest))))
-    for name, angle in (("base joints", limits.base_angle), ("platform joints", limits.platform_angle)):
+    if isinstance(limits, ServoLimits):
+        lines += _servos(mechanism)
+    else:
+        lines.append(("legs", of_legs(mechanism, limits.span)))
+    first = "base joints" if geometry.servos is None else "horn joints"
+    for name, angle in ((first, limits.base_angle), ("platform joints", limits.platform_angle)):
         if angle < pi:
             lines.append((name, f"up to {degrees(angle):.6g} deg"))
     if limits.distance > 0.0:
         lines.append(("legs apart", f"at least {in_unit(mechanism, limits.distance)}"))
-    if limits.dead_length is not None:
+    if isinstance(limits, LegLimits) and limits.dead_length is not None:
         lines.append(("dead length", in_unit(mechanism, limits.dead_length)))
     if limits.speed is not None:
-        lines.append(("speed of legs", f"up to {in_unit(mechanism, limits.speed)}/s"))
+        lines.append(("speed of legs", f"up to {of_legs(mechanism, limits.speed, '/s')}"))
+    return lines
+
+
+def _servos(mechanism: Mechanism) -> Lines:
+    """Horns, rods and axes of servos."""
+    servos = mechanism.geometry.servos
+    assert servos is not None
+    lines = [("horns", in_unit(mechanism, servos.horn)), ("rods", in_unit(mechanism, servos.rod))]
+    lines.append(("servos", f"from {' to '.join(of_legs(mechanism, end) for end in mechanism.limits.span)}"))
+    if servos.axes is None:
+        lines.append(("horns at 0 point to", f"{', '.join(f'{degrees(a):.6g}' for a in servos.directions)} deg"))
+    else:
+        for k, (u, _, a) in enumerate(servos.frames, start=1):
+            axis, zero = (", ".join(f"{x:.6g}" for x in way.round(12) + 0.0) for way in (a, u))
+            lines.append((f"axis {k}", f"{axis}; at 0 the horn points along {zero}"))
+    if servos.branches != 1:
+        lines.append(("branches", ", ".join(f"{branch:+d}" for branch in np.ravel(servos.branches))))
     return lines
 
 
@@ -68,7 +98,7 @@ def notes(mechanism: Mechanism, workspace: Workspace | None = None) -> list[str]
             f"{geometry.n} legs between universal and spherical joints leave the platform {free} "
             f"freedom{'s' if free > 1 else ''}: they do not hold it, and dexterity says only how they act on it"
         )
-    if limits.stroke > limits.shortest and limits.dead_length is None:
+    if isinstance(limits, LegLimits) and limits.stroke > limits.shortest and limits.dead_length is None:
         said.append(
             f"a stroke of {in_unit(mechanism, limits.stroke)} does not fit into a leg that is "
             f"{in_unit(mechanism, limits.shortest)} long when retracted, unless it telescopes in several stages"
@@ -102,6 +132,11 @@ def assess(mechanism: Mechanism, workspace: Workspace) -> Lines:
     if len(found.poses) or len(found.crossings):
         lines.append(("singular poses", f"{len(found.poses)}, left out of the GDI"))
         lines.append(("det J changes sign", f"between {len(found.crossings)} pairs of neighbouring poses"))
+    if found.weakest is not None:
+        place = in_unit(mechanism, found.weakest[:3, 3])
+        lines.append(
+            ("least transmission", f"{found.transmission:.4g} at {place}; at 0 a rod is in line with its horn")
+        )
     total = workspace.states.size
     for state, count in workspace.counts.items():
         lines.append(("poses", f"{100 * count / total:6.2f} %  {state.words}"))
@@ -110,13 +145,18 @@ def assess(mechanism: Mechanism, workspace: Workspace) -> Lines:
 
 def at_pose(mechanism: Mechanism, pose: PoseLike) -> Lines:
     """The legs at one pose."""
-    found = pose_values(mechanism, pose)
+    found, links = pose_values(mechanism, pose), inverse(mechanism.geometry, pose)
+    what = "leg lengths" if mechanism.geometry.servos is None else "servo angles"
     lines = [
-        ("leg lengths", in_unit(mechanism, found["leg_lengths"])),
+        (what, of_legs(mechanism, links.coordinates)),
         ("pose is", PoseState[found["state"].upper()].words),
         ("dexterity nu", f"{found['nu']:.6f}"),
     ]
-    rows = (", ".join(f"{value:9.6f}" for value in row) for row in found["jacobian"])
+    lines += [("out of reach", links.why)] if links.why else []
+    if mechanism.geometry.servos is not None:
+        shares = ("-" if share is None else f"{share:.4f}" for share in found["transmission"])
+        lines.append(("transmission", ", ".join(shares)))
+    rows = (", ".join("-" if value is None else f"{value:9.6f}" for value in row) for row in found["jacobian"])
     lines += [("Jacobian" if i == 1 else "", f"leg {i}: {row}") for i, row in enumerate(rows, start=1)]
     if found["nearest_legs"] is not None:
         i, j = found["nearest_legs"]
@@ -127,10 +167,11 @@ def at_pose(mechanism: Mechanism, pose: PoseLike) -> Lines:
 def along(mechanism: Mechanism, way: Trajectory) -> Lines:
     """The legs along a trajectory: their ranges and speeds, conditioning, and singular poses on the way."""
     motion = follow(mechanism.geometry, way, mechanism.limits, mechanism.dexterity)
+    q, extremes = motion.coordinates, "lowest, highest" if mechanism.geometry.servos else "shortest, longest"
     lines = [
         ("time", f"{way.times[-1] - way.times[0]:.6g} s"),
-        ("shortest, longest", in_unit(mechanism, (motion.lengths.min(), motion.lengths.max()))),
-        ("fastest leg", f"{in_unit(mechanism, np.abs(motion.rates).max())}/s"),
+        (extremes, of_legs(mechanism, (np.nanmin(q), np.nanmax(q)) if np.isfinite(q).any() else np.nan)),
+        ("fastest leg", of_legs(mechanism, motion.fastest, "/s")),
         ("lowest nu", f"{motion.nu.min():.4g}"),
     ]
     if (least := motion.least_seconds) is not None:
@@ -198,11 +239,12 @@ def pose_values(mechanism: Mechanism, pose: PoseLike) -> dict[str, Any]:
     nearest = (geometry.pairs[distances.argmin()] + 1).tolist() if len(distances) else None
     return {
         "pose": T[0].tolist(),
-        "leg_lengths": leg_lengths(geometry, T)[0].tolist(),
+        **_plain_legs(geometry, inverse(geometry, T).coordinates[0]),
         "state": state.name.lower(),
         "reached": state.reached,
         "nu": float(conditioning(geometry, T[0], mechanism.dexterity)),
-        "jacobian": jacobian(geometry, T[0]).tolist(),
+        "jacobian": _plain(jacobian(geometry, T[0])),
+        **({} if geometry.servos is None else {"transmission": _plain(transmission(geometry, T[0]))}),
         "nearest_legs": nearest,
         "leg_distance": float(distances.min()) if len(distances) else None,
     }
@@ -215,8 +257,8 @@ def way_values(mechanism: Mechanism, way: Trajectory) -> dict[str, Any]:
     return {
         "times": way.times.tolist(),
         "poses": way.poses.tolist(),
-        "leg_lengths": motion.lengths.tolist(),
-        "leg_rates": motion.rates.tolist(),
+        **_plain_legs(mechanism.geometry, motion.coordinates),
+        "leg_rates": _plain(motion.rates),
         "nu": motion.nu.tolist(),
         "states": [PoseState(int(state)).name.lower() for state in motion.states],
         "reached": bool(motion.reached.all()),
@@ -224,3 +266,13 @@ def way_values(mechanism: Mechanism, way: Trajectory) -> dict[str, Any]:
         "least_seconds": motion.least_seconds,
         "singular": [{"time": c.time, "pose": c.pose.tolist(), "sign_changes": c.crosses} for c in met],
     }
+
+
+def _plain_legs(geometry: Geometry, coordinates: Array) -> dict[str, Any]:
+    """Coordinates of legs by their name; None where a rod does not reach."""
+    return {"leg_lengths" if geometry.servos is None else "servo_angles": _plain(coordinates)}
+
+
+def _plain(values: Array) -> Any:
+    """Numbers as lists; None for those that are not finite, which JSON does not have."""
+    return np.where(np.isfinite(values), values, None).tolist()

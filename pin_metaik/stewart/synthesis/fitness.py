@@ -13,7 +13,7 @@ from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.mechanism.ranges import Dimensions, Variables
 from pin_metaik.stewart.mechanism.task import DesignTask
 from pin_metaik.stewart.platform.geometry import Geometry, chords, gaps
-from pin_metaik.stewart.platform.limits import LegLimits, PoseState, excess
+from pin_metaik.stewart.platform.limits import LegLimits, Limits, PoseState, excess
 from pin_metaik.stewart.workspace.surveying import explored, with_best_length
 from pin_metaik.stewart.workspace.workspace import Workspace
 
@@ -102,33 +102,42 @@ class Fitness:
                 )
             ]
         )
-        dead = self.mechanism.limits.dead_length
         short = np.maximum(self.task.joint_gap - between, 0.0).sum() + max(
             dimensions.shortest - dimensions.longest, 0.0
         )
-        short += 0.0 if dead is None else excess(dimensions.shortest, dimensions.longest, dead)
+        if isinstance(limits := self.mechanism.limits, LegLimits) and limits.dead_length is not None:
+            short += excess(dimensions.shortest, dimensions.longest, limits.dead_length)
         return float(short) if between.min() > 0.0 else float(short) + self.cube
 
     @checked
-    def build(self, dimensions: Dimensions) -> tuple[Geometry, LegLimits]:
+    def build(self, dimensions: Dimensions) -> tuple[Geometry, Limits]:
         """The platform with these dimensions.
 
         Raises:
             InvalidGeometry: If there is something missing.
         """
+        geometry, limits = self.mechanism.geometry, self.mechanism.limits
+        servos = geometry.servos
+        if servos is not None:
+            own = {name: getattr(dimensions, name).tolist() for name in ("horn", "rod", "directions")}
+            horn, rod = (each[0] if len(each) == 1 else tuple(each) for each in (own["horn"], own["rod"]))
+            servos = replace(servos, horn=horn, rod=rod, directions=tuple(own["directions"]))
         geometry = replace(
-            self.mechanism.geometry,
+            geometry,
             base_radius=dimensions.base_radius,
             platform_radius=dimensions.platform_radius,
             base_angles=tuple(dimensions.base_angles.tolist()),
             platform_angles=tuple(dimensions.platform_angles.tolist()),
             base=tuple(map(tuple, dimensions.base.tolist())) or None,
             platform=tuple(map(tuple, dimensions.platform.tolist())) or None,
+            servos=servos,
         )
-        return geometry, replace(self.mechanism.limits, shortest=dimensions.shortest, longest=dimensions.longest)
+        if isinstance(limits, LegLimits):
+            limits = replace(limits, shortest=dimensions.shortest, longest=dimensions.longest)
+        return geometry, limits
 
     @checked
-    def workspace(self, geometry: Geometry, limits: LegLimits, *, fine: bool = False) -> Workspace:
+    def workspace(self, geometry: Geometry, limits: Limits, *, fine: bool = False) -> Workspace:
         """The workspace on the task's grid, or on a finer one within its ranges where too few of its cells are reached.
 
         Unlike that of ``survey`` it may be empty.
