@@ -12,7 +12,9 @@ import typer
 from pin_metaik import stewart
 from pin_metaik.cli.stewart.common import File, Json, Six, can_write, pose_of, show_lines
 from pin_metaik.errors import InvalidConfiguration
-from pin_metaik.stewart.show.report import Lines, along, in_unit, pose_words, way_values
+from pin_metaik.stewart.show.notes import in_unit
+from pin_metaik.stewart.show.report import Lines, along, pose_words
+from pin_metaik.stewart.show.values import way_values
 
 
 def forward(

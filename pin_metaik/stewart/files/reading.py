@@ -33,6 +33,17 @@
     dead_length = 100                      # optional: what a retracted leg is longer than its stroke
     speed = 50                             # optional: the fastest that a leg extends, its unit of length a second
 
+    # or, instead of shortest, longest, dead_length and speed: legs moved by servos, see Servos and ServoLimits
+    # [servos]
+    # horn = 15                            # one for all, or a list
+    # rod = 120
+    # directions = [90, -90, -30, ...]     # where horns point at 0, axes in the plane of the base; or, anywhere:
+    # axes = [[1, 0, 0.2], ...]            # and, optional, zeros = [[0, 1, 0], ...]
+    # branches = 1                         # optional: 1 or -1, one for all, or a list
+    # lowest = -80
+    # highest = 80
+    # speed = 500                          # optional: its unit of angles a second
+
     [workspace]                            # optional, see Grid
     counts = [40, 40, 40]
     x = [-100, 100]                        # left out: as far as the legs reach; y and z likewise
@@ -84,14 +95,17 @@ from pin_metaik.optimize import ALGORITHMS, Metaheuristic
 from pin_metaik.stewart.files.tables import Table
 from pin_metaik.stewart.kinematics.conditioning import Dexterity
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
-from pin_metaik.stewart.mechanism.ranges import SIDES, Ranges
+from pin_metaik.stewart.mechanism.ranges import ANGLES_EACH, SIDES, Ranges
 from pin_metaik.stewart.mechanism.task import DesignTask
 from pin_metaik.stewart.mechanism.units import ANGLES, LENGTHS, PURE, Unit
 from pin_metaik.stewart.platform.geometry import Geometry, legs_of
-from pin_metaik.stewart.platform.limits import LegLimits
+from pin_metaik.stewart.platform.limits import LegLimits, Limits, ServoLimits
+from pin_metaik.stewart.platform.servos import Servos
 from pin_metaik.stewart.workspace.grid import Grid
 
-OPTIONAL_LIMITS = ("base_angle", "platform_angle", "distance", "home", "dead_length", "speed")
+JOINT_LIMITS = ("base_angle", "platform_angle", "distance", "home")
+SERVOS = ("horn", "rod", "lowest", "highest")
+OPTIONAL_SERVOS = ("directions", "axes", "zeros", "branches", "speed")
 GRID = ("counts", "x", "y", "z", "steps", "roll", "pitch", "yaw")
 DESIGN = (
     "algorithm",
@@ -137,9 +151,10 @@ def read_mechanism(path: str | Path) -> Mechanism:
 
 def _mechanism(content: dict[str, Any], path: str) -> Mechanism:
     needed = ("name", "length", "angle", "base", "platform", "legs")
-    top = Table(content, path, needed, ("description", "source", "workspace", "dexterity", "design"))
+    top = Table(content, path, needed, ("description", "source", "servos", "workspace", "dexterity", "design"))
     length, angle = top.one_of("length", LENGTHS), top.one_of("angle", ANGLES)
-    legs = _legs_table(content["legs"], path)
+    servos = Table(content["servos"], f"{path}: servos", SERVOS, OPTIONAL_SERVOS) if "servos" in top else None
+    legs = _legs_table(content["legs"], path, servos is not None)
     optional: dict[str, Any] = {}
     if "workspace" in top:
         optional["grid"] = _grid(Table(content["workspace"], f"{path}: workspace", (), GRID), length, angle)
@@ -149,8 +164,8 @@ def _mechanism(content: dict[str, Any], path: str) -> Mechanism:
         optional["task"] = _task(content["design"], path, length, angle)
     return Mechanism(
         top.text("name"),
-        _geometry(content, legs, path, length, angle),
-        _limits(legs, length, angle),
+        _geometry(content, legs, servos, path, length, angle),
+        _limits(legs, servos, length, angle),
         unit=length.name,
         description=top.text("description").strip(),
         source=top.text("source").strip(),
@@ -158,13 +173,17 @@ def _mechanism(content: dict[str, Any], path: str) -> Mechanism:
     )
 
 
-def _legs_table(content: object, path: str) -> Table:
+def _legs_table(content: object, path: str, servos: bool) -> Table:
     by_matrix = isinstance(content, dict) and "connection" in content
     joins = ("connection",) if by_matrix else ("base", "platform")
-    return Table(content, f"{path}: legs", (*joins, "shortest", "longest"), OPTIONAL_LIMITS)
+    if servos:
+        return Table(content, f"{path}: legs", joins, JOINT_LIMITS)
+    return Table(content, f"{path}: legs", (*joins, "shortest", "longest"), (*JOINT_LIMITS, "dead_length", "speed"))
 
 
-def _geometry(content: dict[str, Any], legs: Table, path: str, length: Unit, angle: Unit) -> Geometry:
+def _geometry(
+    content: dict[str, Any], legs: Table, servos: Table | None, path: str, length: Unit, angle: Unit
+) -> Geometry:
     if "connection" in legs:
         pairs = legs_of(legs.content["connection"])
     else:
@@ -175,7 +194,19 @@ def _geometry(content: dict[str, Any], legs: Table, path: str, length: Unit, ang
             )
         pairs = tuple((b - 1, m - 1) for b, m in zip(*ends, strict=True))
     base = _side(content, "base", path, length, angle)
-    return Geometry(legs=pairs, **base, **_side(content, "platform", path, length, angle))
+    moved = None if servos is None else _servos(servos, length, angle)
+    return Geometry(legs=pairs, servos=moved, **base, **_side(content, "platform", path, length, angle))
+
+
+def _servos(table: Table, length: Unit, angle: Unit) -> Servos:
+    given: dict[str, Any] = {key: table.one_or_each(key, length) for key in ("horn", "rod")}
+    if "directions" in table:
+        given["directions"] = table.numbers("directions", angle)
+    given |= {key: table.points(key, PURE) for key in ("axes", "zeros") if key in table}
+    if "branches" in table:
+        each = isinstance(table.content["branches"], list)
+        given["branches"] = table.wholes("branches") if each else table.whole("branches")
+    return Servos(**given)
 
 
 def _side(content: dict[str, Any], side: str, path: str, length: Unit, angle: Unit) -> dict[str, Any]:
@@ -193,7 +224,7 @@ def _side(content: dict[str, Any], side: str, path: str, length: Unit, angle: Un
     return {**circle, **reference}
 
 
-def _limits(legs: Table, length: Unit, angle: Unit) -> LegLimits:
+def _limits(legs: Table, servos: Table | None, length: Unit, angle: Unit) -> Limits:
     read: dict[str, Callable[[str], Any]] = {
         "base_angle": lambda key: legs.number(key, angle),
         "platform_angle": lambda key: legs.number(key, angle),
@@ -202,7 +233,11 @@ def _limits(legs: Table, length: Unit, angle: Unit) -> LegLimits:
         "dead_length": lambda key: legs.number(key, length),
         "speed": lambda key: legs.number(key, length),
     }
-    optional = {key: read[key](key) for key in OPTIONAL_LIMITS if key in legs}
+    optional = {key: read[key](key) for key in read if key in legs}
+    if servos is not None:
+        if "speed" in servos:
+            optional["speed"] = servos.number("speed", angle)
+        return ServoLimits(servos.number("lowest", angle), servos.number("highest", angle), **optional)
     return LegLimits(legs.number("shortest", length), legs.number("longest", length), **optional)
 
 
@@ -250,7 +285,7 @@ def _spans(table: Table, key: str, length: Unit, angle: Unit) -> Any:
     """What a design may change of one of the dimensions of ``Ranges``."""
     if key in SIDES:
         return table.point_spans(key, length)
-    return table.spans(key, angle) if key.endswith("angles") else table.span(key, length)
+    return table.spans(key, angle) if key in ANGLES_EACH else table.span(key, length)
 
 
 def _algorithm(name: str, settings: object, path: str) -> Metaheuristic:

@@ -68,6 +68,10 @@ class Table:
         """A finite number, in the package's unit."""
         return self._number(key, self.content[key], unit)
 
+    def one_or_each(self, key: str, unit: Unit = PURE) -> float | tuple[float, ...]:
+        """A finite number, or a list of them."""
+        return self.numbers(key, unit) if isinstance(self.content[key], list) else self.number(key, unit)
+
     def numbers(self, key: str, unit: Unit = PURE, count: int | None = None) -> tuple[float, ...]:
         """A list of finite numbers, of this many if it matters."""
         return tuple(self._number(key, value, unit) for value in self._list(key, count))

@@ -9,16 +9,18 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize import ALGORITHMS, Metaheuristic, make
 from pin_metaik.output import writable
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
-from pin_metaik.stewart.mechanism.ranges import SIDES, Ranges, Span
+from pin_metaik.stewart.mechanism.ranges import ANGLES_EACH, SIDES, Ranges, Span
 from pin_metaik.stewart.mechanism.task import DesignTask
 from pin_metaik.stewart.mechanism.units import ANGLES, LENGTHS, PURE, Unit
 from pin_metaik.stewart.platform.geometry import Geometry
-from pin_metaik.stewart.platform.limits import LegLimits
+from pin_metaik.stewart.platform.limits import LegLimits, Limits
 from pin_metaik.stewart.workspace.grid import Grid
 
 DEG = ANGLES["deg"]
@@ -57,6 +59,7 @@ def to_toml(mechanism: Mechanism) -> str:
         f"platform = {[joint + 1 for joint in platform]}",
     ]
     lines += _limits(mechanism.limits, mm)
+    lines += _section("servos", _servos(mechanism, mm))
     lines += _section("workspace", _grid(mechanism.grid, mm))
     length = mechanism.dexterity.length
     shown = _text(length) if isinstance(length, str) else mm.write(length)
@@ -83,8 +86,9 @@ def _joints(geometry: Geometry, mm: Unit) -> list[str]:
     return keys + tables
 
 
-def _limits(limits: LegLimits, mm: Unit) -> list[str]:
-    lines = [f"shortest = {mm.write(limits.shortest)}", f"longest = {mm.write(limits.longest)}"]
+def _limits(limits: Limits, mm: Unit) -> list[str]:
+    slides = isinstance(limits, LegLimits)
+    lines = [f"{name} = {mm.write(getattr(limits, name))}" for name in ("shortest", "longest") if slides]
     for key in ("base_angle", "platform_angle"):
         if getattr(limits, key) < math.pi:
             lines.append(f"{key} = {DEG.write(getattr(limits, key))}")
@@ -93,9 +97,26 @@ def _limits(limits: LegLimits, mm: Unit) -> list[str]:
     if limits.home is not None:
         lines.append(f"home = {_list(limits.home, mm)}")
     for key in ("dead_length", "speed"):
-        if (value := getattr(limits, key)) is not None:
+        if slides and (value := getattr(limits, key)) is not None:
             lines.append(f"{key} = {mm.write(value)}")
     return lines
+
+
+def _servos(mechanism: Mechanism, mm: Unit) -> list[str]:
+    servos, limits = mechanism.geometry.servos, mechanism.limits
+    if servos is None:
+        return []
+    lines = []
+    for key in ("horn", "rod"):
+        value = getattr(servos, key)
+        lines.append(f"{key} = {_list(value, mm) if isinstance(value, tuple) else mm.write(value)}")
+    if servos.axes is None:
+        lines.append(f"directions = {_list(servos.directions, DEG)}")
+    lines += [f"{key} = {_points(ways, PURE)}" for key in ("axes", "zeros") if (ways := getattr(servos, key))]
+    if servos.branches != 1:
+        lines.append(f"branches = {np.array(servos.branches).tolist()}")
+    lines += [f"{key} = {DEG.write(end)}" for key, end in zip(("lowest", "highest"), limits.span, strict=True)]
+    return lines + ([] if limits.speed is None else [f"speed = {DEG.write(limits.speed)}"])
 
 
 def _grid(grid: Grid, mm: Unit) -> list[str]:
@@ -136,7 +157,7 @@ def _ranges(ranges: Ranges, mm: Unit) -> list[str]:
         if name in SIDES:
             joints = (", ".join(_span(span, mm) for span in joint) for joint in value)
             shown = f"[{', '.join(f'[{joint}]' for joint in joints)}]"
-        elif name.endswith("angles"):
+        elif name in ANGLES_EACH:
             shown = f"[{', '.join(_span(span, DEG) for span in value)}]"
         else:
             shown = _span(value, mm)

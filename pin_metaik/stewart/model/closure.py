@@ -13,9 +13,9 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked
-from pin_metaik.errors import InvalidConfiguration, InvalidSetting
+from pin_metaik.errors import InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.optimize.space import Array
-from pin_metaik.stewart.kinematics.inverse import leg_vectors
+from pin_metaik.stewart.kinematics.inverse import inverse
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.model.urdf import to_urdf
 from pin_metaik.stewart.platform.poses import PoseLike, one_pose
@@ -45,29 +45,37 @@ class ClosedModel:
 
     @checked
     def leg(self, i: int) -> list[pin.JointModel]:
-        """Joints of leg i, counted from 0: about x, about y, length."""
+        """Joints of leg i, counted from 0: about x and about y of what carries its link, then its actuator."""
         if not 0 <= i < self.mechanism.geometry.n:
             raise InvalidSetting(f"leg i is 0 to {self.mechanism.geometry.n - 1}, got {i}")
-        names = (f"leg_{i + 1}_about_x", f"leg_{i + 1}_about_y", f"leg_{i + 1}_length")
+        actuator = "length" if self.mechanism.geometry.servos is None else "servo"
+        names = (f"leg_{i + 1}_{name}" for name in ("about_x", "about_y", actuator))
         return [self.model.joints[self.model.getJointId(name)] for name in names]
 
     @property
-    def slides(self) -> list[int]:
-        """Columns of v that are the rates of the legs (n)."""
+    def actuators(self) -> list[int]:
+        """Columns of v that are the rates of the slides or servos (n)."""
         return [self.leg(i)[2].idx_v for i in range(self.mechanism.geometry.n)]
 
     @checked
     def configuration(self, pose: PoseLike) -> Array:
-        """The configuration q (nq,) at a pose, in closed form: the direction of a leg is Rx(a) Ry(b) z."""
+        """The configuration q (nq,) at a pose, in closed form: the direction of a link is Rx(a) Ry(b) z.
+
+        Raises:
+            InvalidTarget: Not a pose, or one that a rod does not reach.
+        """
         T = one_pose(pose)
+        actuation = self.mechanism.geometry.actuation
+        links = inverse(self.mechanism.geometry, T)
+        if links.why:
+            raise InvalidTarget(f"the legs do not reach this pose: {links.why}")
         q: Array = pin.neutral(self.model)
         first = self.platform.idx_q
         q[first : first + 7] = pin.SE3ToXYZQUAT(pin.SE3(T))
-        for i, v in enumerate(leg_vectors(self.mechanism.geometry, T)[0]):
-            d = np.linalg.norm(v)
-            x, y, z = v / d if d > 0.0 else (0.0, 0.0, 1.0)
-            about_x, about_y, length = self.leg(i)
-            q[about_x.idx_q], q[about_y.idx_q], q[length.idx_q] = np.arctan2(-y, z), np.arcsin(np.clip(x, -1, 1)), d
+        for i, (x, y, z) in enumerate(actuation.in_first_joint(links)[0]):
+            about_x, about_y, actuator = self.leg(i)
+            q[about_x.idx_q], q[about_y.idx_q] = np.arctan2(-y, z), np.arcsin(np.clip(x, -1, 1))
+            q[actuator.idx_q] = links.coordinates[0, i]
         return q
 
     @checked
@@ -97,16 +105,20 @@ class ClosedModel:
         return np.concatenate(errors), np.concatenate(rows)
 
     @checked
-    def forward(self, lengths: ArrayLike, start: PoseLike) -> Array | None:
-        """The pose (4, 4) at which the loops close with these leg lengths (n,) in m, by Newton; None if it finds none.
+    def forward(self, coordinates: ArrayLike, start: PoseLike) -> Array | None:
+        """The pose (4, 4) at which the loops close with these lengths in m, or angles in rad (n,), by Newton.
+
+        Returns:
+            The pose; None if it finds none.
 
         Raises:
-            InvalidConfiguration: Not n finite lengths.
+            InvalidConfiguration: Not n finite coordinates.
+            InvalidTarget: The start is none, or one that a rod does not reach.
         """
-        d = array("lengths", lengths, len(self.slides), error=InvalidConfiguration)
+        held = array("coordinates", coordinates, len(self.actuators), error=InvalidConfiguration)
         q = self.configuration(start)
-        q[[self.leg(i)[2].idx_q for i in range(len(d))]] = d
-        free = np.setdiff1d(np.arange(self.model.nv), self.slides)
+        q[[self.leg(i)[2].idx_q for i in range(len(held))]] = held
+        free = np.setdiff1d(np.arange(self.model.nv), self.actuators)
         for _ in range(STEPS):
             error, J = self.residual(q)
             if np.abs(error).max() <= TOLERANCE:
@@ -118,7 +130,7 @@ class ClosedModel:
 
     @checked
     def rates(self, pose: PoseLike) -> Array:
-        """d_dot = J (v, omega) from the closed loops: J (n, 6), v of P and omega in the base frame."""
+        """q_dot = J (v, omega) from the closed loops: J (n, 6), v of P and omega in the base frame."""
         q = self.configuration(pose)
         _, J = self.residual(q)
         first = self.platform.idx_v
@@ -127,7 +139,7 @@ class ClosedModel:
         moved = -np.linalg.solve(J[:, legs], J[:, flying])  # velocities of the legs per velocity of the platform
         R = self.pose(q)[:3, :3]
         body = np.kron(np.eye(2), R.T)  # base frame to platform frame
-        rates: Array = moved[np.searchsorted(legs, self.slides)] @ body
+        rates: Array = moved[np.searchsorted(legs, self.actuators)] @ body
         return rates
 
 

@@ -105,7 +105,7 @@ class Slides:
 def directions(vectors: Array, otherwise: tuple[float, float, float]) -> Array:
     """Unit vectors (..., 3); those of no length become another direction."""
     d = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.divide(vectors, d, out=np.full_like(vectors, otherwise), where=d > 0.0)
+    return np.asarray(np.divide(vectors, d, out=np.full_like(vectors, otherwise), where=d > 0.0))
 
 
 SLIDES = Slides()

@@ -119,17 +119,17 @@ class Servos:
     @cached_property
     def rows(self) -> Array:
         """Each servo as the compiled loops take it: u, w, a, horn, rod, branch (n, 12)."""
-        parts = (self.frames.reshape(-1, 9), *(self._each(name) for name in ("horn", "rod", "branches")))
+        parts = (self.frames.reshape(-1, 9), *(self.each(name) for name in ("horn", "rod", "branches")))
         return np.column_stack(parts)
 
     def span(self) -> tuple[float, float]:
         """Least and greatest distance between a shaft and a platform joint, m."""
-        horn, rod = self._each("horn"), self._each("rod")
+        horn, rod = self.each("horn"), self.each("rod")
         return float(np.abs(rod - horn).min()), float((rod + horn).max())
 
     def links(self, b: Array, v: Array) -> Links:
         """The servos' angles on their branches, the tips of their horns and the rods."""
-        horn, rod, branch = (self._each(name) for name in ("horn", "rod", "branches"))
+        horn, rod, branch = (self.each(name) for name in ("horn", "rod", "branches"))
         x, y, along = (np.einsum("nc,knc->kn", self.frames[:, row], v) for row in range(3))
         r = np.hypot(x, y)
         phi = np.arctan2(y, x)
@@ -148,9 +148,9 @@ class Servos:
 
     def held(self, b: Array, q: Array) -> tuple[Array, Array]:
         """From the tips of the horns, as long as the rods."""
-        horn = self._each("horn")[:, None]
+        horn = self.each("horn")[:, None]
         tips = horn * (np.cos(q)[..., None] * self.frames[:, 0] + np.sin(q)[..., None] * self.frames[:, 1])
-        return b + tips, np.broadcast_to(self._each("rod"), q.shape)
+        return b + tips, np.broadcast_to(self.each("rod"), q.shape)
 
     def in_first_joint(self, links: Links) -> Array:
         """Rods along the horn, the way it moves, and along the axis."""
@@ -161,8 +161,8 @@ class Servos:
         directions: Array = np.einsum("knrc,knc->knr", horns, rods)
         return directions
 
-    def _each(self, name: str) -> Array:
-        """A number for each leg (n,)."""
+    def each(self, name: str) -> Array:
+        """The horn, the rod or the branch of each leg (n,)."""
         return np.broadcast_to(np.asarray(getattr(self, name), dtype=float), self.legs)
 
 

@@ -1,40 +1,30 @@
-"""What there is to say about a mechanism, as labelled lines in its own units and as plain values."""
+"""What there is to say about a mechanism, as labelled lines in its own units."""
 
 from __future__ import annotations
 
 from math import degrees, pi
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from pin_metaik.optimize.space import Array
-from pin_metaik.stewart.kinematics.conditioning import conditioning
-from pin_metaik.stewart.kinematics.interference import leg_distances
 from pin_metaik.stewart.kinematics.inverse import inverse
-from pin_metaik.stewart.kinematics.jacobian import jacobian, transmission
-from pin_metaik.stewart.kinematics.judging import judge_poses
 from pin_metaik.stewart.kinematics.trajectory import Trajectory, follow
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
-from pin_metaik.stewart.platform.geometry import MOST_LEGS, Geometry
 from pin_metaik.stewart.platform.limits import LegLimits, PoseState, ServoLimits
-from pin_metaik.stewart.platform.poses import PoseLike, as_poses, one_pose
+from pin_metaik.stewart.platform.poses import PoseLike, one_pose
+from pin_metaik.stewart.show.notes import in_unit, notes
+from pin_metaik.stewart.show.values import pose_values
 from pin_metaik.stewart.synthesis.design import Designed
 from pin_metaik.stewart.workspace.singularity import crossings, singularities
-from pin_metaik.stewart.workspace.surveying import LEAST
 from pin_metaik.stewart.workspace.workspace import Workspace
 
 Lines: TypeAlias = list[tuple[str, str]]
 
 
-def in_unit(mechanism: Mechanism, lengths: ArrayLike) -> str:
-    """Lengths given in m, in the mechanism's unit."""
-    return f"{', '.join(f'{value / mechanism.metres:.6g}' for value in np.ravel(lengths))} {mechanism.unit}"
-
-
 def of_legs(mechanism: Mechanism, coordinates: ArrayLike, per: str = "") -> str:
-    """Coordinates of legs in m or rad, or their rates ``per`` s, in the unit they are shown in; - where there is none."""
+    """Coordinates of legs in m or rad, or their rates ``per`` s, in the unit they are shown in; - for none."""
     shown = mechanism.coordinate
     values = ("-" if np.isnan(value) else f"{value / shown.one:.6g}" for value in np.ravel(coordinates))
     return f"{', '.join(values)} {shown.unit}{per}"
@@ -86,30 +76,6 @@ def _servos(mechanism: Mechanism) -> Lines:
     if servos.branches != 1:
         lines.append(("branches", ", ".join(f"{branch:+d}" for branch in np.ravel(servos.branches))))
     return lines
-
-
-def notes(mechanism: Mechanism, workspace: Workspace | None = None) -> list[str]:
-    """What a reader of the figures should know before believing them."""
-    geometry, limits = mechanism.geometry, mechanism.limits
-    said = []
-    if geometry.n < MOST_LEGS:
-        free = MOST_LEGS - geometry.n
-        said.append(
-            f"{geometry.n} legs between universal and spherical joints leave the platform {free} "
-            f"freedom{'s' if free > 1 else ''}: they do not hold it, and dexterity says only how they act on it"
-        )
-    if isinstance(limits, LegLimits) and limits.stroke > limits.shortest and limits.dead_length is None:
-        said.append(
-            f"a stroke of {in_unit(mechanism, limits.stroke)} does not fit into a leg that is "
-            f"{in_unit(mechanism, limits.shortest)} long when retracted, unless it telescopes in several stages"
-        )
-    if workspace is None:
-        return said
-    if not workspace.complete:
-        said.append("interrupted: the figures are about the poses seen until then")
-    if max(workspace.cells.shape[:3]) > 1 and workspace.cells_reached < LEAST:
-        said.append(f"only {workspace.cells_reached} cells carry the figures: they are rough; use a finer grid")
-    return said
 
 
 def assess(mechanism: Mechanism, workspace: Workspace) -> Lines:
@@ -205,74 +171,3 @@ def outcome(designed: Designed) -> Lines:
     score = designed.score
     parts = f"dexterity {score.dexterity:.4f}, workspace {score.workspace:.4f}"
     return [*lines, ("fitness", f"{score.fitness:.4f}: {parts}")]
-
-
-def values(mechanism: Mechanism, workspace: Workspace) -> dict[str, Any]:
-    """A workspace as plain values in m and rad, for JSON; ``gdi`` is null for a singular mechanism."""
-    found = singularities(workspace)
-    return {
-        "name": mechanism.name,
-        "type": mechanism.geometry.type,
-        "verdict": str(workspace.verdict),
-        "notes": notes(mechanism, workspace),
-        "complete": workspace.complete,
-        "volume": workspace.volume,
-        "volume_in_every_orientation": workspace.volume_of_all,
-        "cells_reached": workspace.cells_reached,
-        "share_reached": float(workspace.reached.mean()),
-        "gdi": workspace.gdi,
-        "norm": mechanism.dexterity.norm,
-        "characteristic_length": workspace.length,
-        "lowest_nu": found.nu,
-        "singular_poses": len(found.poses),
-        "sign_changes": len(found.crossings),
-        "poses": {state.name.lower(): count for state, count in workspace.counts.items()},
-    }
-
-
-def pose_values(mechanism: Mechanism, pose: PoseLike) -> dict[str, Any]:
-    """One pose as plain values in m and rad: its legs, what it is to the limits, its dexterity and Jacobian."""
-    geometry = mechanism.geometry
-    T = as_poses(pose)
-    state = PoseState(int(judge_poses(geometry, mechanism.limits, T)[0]))
-    distances = leg_distances(geometry, T)[0]
-    nearest = (geometry.pairs[distances.argmin()] + 1).tolist() if len(distances) else None
-    return {
-        "pose": T[0].tolist(),
-        **_plain_legs(geometry, inverse(geometry, T).coordinates[0]),
-        "state": state.name.lower(),
-        "reached": state.reached,
-        "nu": float(conditioning(geometry, T[0], mechanism.dexterity)),
-        "jacobian": _plain(jacobian(geometry, T[0])),
-        **({} if geometry.servos is None else {"transmission": _plain(transmission(geometry, T[0]))}),
-        "nearest_legs": nearest,
-        "leg_distance": float(distances.min()) if len(distances) else None,
-    }
-
-
-def way_values(mechanism: Mechanism, way: Trajectory) -> dict[str, Any]:
-    """A trajectory as plain values in m, s and rad: the legs over time, limits, dexterity, and singular poses."""
-    motion = follow(mechanism.geometry, way, mechanism.limits, mechanism.dexterity)
-    met = crossings(mechanism.geometry, way)
-    return {
-        "times": way.times.tolist(),
-        "poses": way.poses.tolist(),
-        **_plain_legs(mechanism.geometry, motion.coordinates),
-        "leg_rates": _plain(motion.rates),
-        "nu": motion.nu.tolist(),
-        "states": [PoseState(int(state)).name.lower() for state in motion.states],
-        "reached": bool(motion.reached.all()),
-        "too_fast": bool(motion.too_fast.any()),
-        "least_seconds": motion.least_seconds,
-        "singular": [{"time": c.time, "pose": c.pose.tolist(), "sign_changes": c.crosses} for c in met],
-    }
-
-
-def _plain_legs(geometry: Geometry, coordinates: Array) -> dict[str, Any]:
-    """Coordinates of legs by their name; None where a rod does not reach."""
-    return {"leg_lengths" if geometry.servos is None else "servo_angles": _plain(coordinates)}
-
-
-def _plain(values: Array) -> Any:
-    """Numbers as lists; None for those that are not finite, which JSON does not have."""
-    return np.where(np.isfinite(values), values, None).tolist()
