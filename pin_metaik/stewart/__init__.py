@@ -39,7 +39,7 @@ from pin_metaik.stewart.show.picture import draw, draw_above, draw_history, draw
 from pin_metaik.stewart.show.progress import progress_bar
 from pin_metaik.stewart.synthesis.design import Designed, design
 from pin_metaik.stewart.synthesis.fitness import Fitness, Score
-from pin_metaik.stewart.synthesis.type_designs import TypeDesign, compare_types, new_mechanism
+from pin_metaik.stewart.synthesis.type_designs import TypeDesign, compare_types, new_mechanism, new_servo_mechanism
 from pin_metaik.stewart.workspace.grid import Grid
 from pin_metaik.stewart.workspace.singularity import Crossing, Singularities, crossings, singularities
 from pin_metaik.stewart.workspace.surveying import survey
@@ -99,6 +99,7 @@ __all__ = [
     "load_mechanism",
     "mechanism_names",
     "new_mechanism",
+    "new_servo_mechanism",
     "pose_at",
     "progress_bar",
     "read_mechanism",

@@ -31,7 +31,7 @@ class Ranges:
     Attributes:
         base_radius: rb.
         platform_radius: rm.
-        base_angles: One for each base joint.
+        base_angles: One for each base joint. Where one goes round the circle, its servos turn with it.
         platform_angles: One for each platform joint.
         shortest: Length of a retracted leg.
         longest: Length of an extended leg.
@@ -39,7 +39,7 @@ class Ranges:
         platform: x, y and z of each platform joint, likewise, in the platform's frame.
         horn: Of servos: the length of all horns.
         rod: Of servos: the length of all rods.
-        directions: Of servos: where each horn points at angle 0.
+        directions: Of servos: where each horn points at angle 0 with its base joint where the mechanism has it.
 
     Raises:
         InvalidBounds: A range that is not two finite numbers, the lower first; a length that may not be above zero.

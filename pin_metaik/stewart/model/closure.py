@@ -115,7 +115,7 @@ class ClosedModel:
             InvalidConfiguration: Not n finite coordinates.
             InvalidTarget: The start is none, or one that a rod does not reach.
         """
-        held = array("coordinates", coordinates, len(self.actuators), error=InvalidConfiguration)
+        held = array(f"{self.mechanism.coordinate.word}s", coordinates, len(self.actuators), error=InvalidConfiguration)
         q = self.configuration(start)
         q[[self.leg(i)[2].idx_q for i in range(len(held))]] = held
         free = np.setdiff1d(np.arange(self.model.nv), self.actuators)

@@ -9,9 +9,12 @@ from __future__ import annotations
 from math import pi, radians
 from re import fullmatch
 
+import numpy as np
+
 from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidGeometry, InvalidSetting, UnknownName
 from pin_metaik.stewart.platform.geometry import FEWEST_LEGS, MOST_LEGS, Geometry
+from pin_metaik.stewart.platform.servos import Servos
 
 NAMED = ("3x3", "4x3", "4x4", "5x3", "5x4", "5x5", "6x3", "6x4", "6x5", "6x6")
 """The types the paper names; the mirrored ones (3x4 ...) come from the same lines."""
@@ -53,6 +56,21 @@ def standard_geometry(
         )
     except InvalidGeometry as error:
         raise InvalidGeometry(f"{type} with {legs} legs: {error}") from None
+
+
+def tangential_servos(geometry: Geometry, horn: float, rod: float) -> Servos:
+    """Servos for a platform of joints on circles: their axes point to the middle of the base, in its plane.
+
+    Horns point along the circle, away from where their rods lean.
+
+    Args:
+        geometry: The platform, with a base joint for each leg.
+        horn: Length of the horns, m.
+        rod: Length of the rods, m.
+    """
+    across = np.cross(geometry.b, geometry.m)[:, 2]  # above zero where the leg leans counterclockwise
+    outward = np.arctan2(geometry.b[:, 1], geometry.b[:, 0])
+    return Servos(horn, rod, directions=tuple((outward - np.where(across > 0.0, 0.5 * pi, -0.5 * pi)).tolist()))
 
 
 def _side(legs: int, joints: int, first: int, split: float) -> tuple[tuple[float, ...], list[int]]:

@@ -12,7 +12,7 @@ one angle for each branch. Where |c| > r the rod is too short or too long (Eisel
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -160,6 +160,19 @@ class Servos:
         horns = np.stack((cos * u + sin * w, cos * w - sin * u, np.broadcast_to(a, rods.shape)), axis=-2)
         directions: Array = np.einsum("knrc,knc->knr", horns, rods)
         return directions
+
+    def turned(self, angles: Array) -> Servos:
+        """These servos, each turned about the vertical by an angle in rad (n,), as if its joint went round a circle."""
+        if self.axes is None:
+            return replace(self, directions=tuple((np.array(self.directions) + angles).tolist()))
+        cos, sin = np.cos(angles), np.sin(angles)
+        turned: dict[str, Any] = {}
+        for name in ("axes", "zeros"):
+            if getattr(self, name) is not None:
+                x, y, z = np.array(getattr(self, name)).T
+                ways = np.column_stack((cos * x - sin * y, sin * x + cos * y, z))
+                turned[name] = tuple(map(tuple, ways.tolist()))
+        return replace(self, **turned)
 
     def each(self, name: str) -> Array:
         """The horn, the rod or the branch of each leg (n,)."""

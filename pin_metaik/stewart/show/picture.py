@@ -16,6 +16,7 @@ from pin_metaik.stewart.kinematics.forward import level
 from pin_metaik.stewart.kinematics.inverse import inverse
 from pin_metaik.stewart.kinematics.trajectory import Motion
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
+from pin_metaik.stewart.platform.actuation import directions
 from pin_metaik.stewart.platform.geometry import Geometry, on_circle
 from pin_metaik.stewart.platform.limits import LegLimits
 from pin_metaik.stewart.platform.poses import PoseLike, one_pose, pose_at
@@ -135,11 +136,10 @@ def draw_above(mechanism: Mechanism, pose: PoseLike | None = None) -> Figure:
     for joints, ring, letter, colour in sides:
         axes.plot(*(scale * ring[:, :2]).T, color=colour, lw=1, alpha=0.6)
         axes.scatter(*(scale * joints[:, :2]).T, color=colour, s=36, zorder=3)
-        middle = joints.mean(axis=0)
-        for k, joint in enumerate(joints, start=1):
-            outward = joint - middle
-            place = scale * (joint + aside * outward / max(float(np.linalg.norm(outward)), 1e-12))[:2]
-            label = axes.text(*place, f"{letter}{k}", color=colour, fontsize=10, fontweight="bold", zorder=4)
+        for k, place in enumerate(_beside(joints, aside), start=1):
+            label = axes.text(
+                *(scale * place[:2]), f"{letter}{k}", color=colour, fontsize=10, fontweight="bold", zorder=4
+            )
             label.set(ha="center", va="center", path_effects=_halo())
     axes.set_xlabel(f"x ({mechanism.unit})")
     axes.set_ylabel(f"y ({mechanism.unit})")
@@ -273,10 +273,8 @@ def _mechanism(axes: Any, mechanism: Mechanism, T: Array, scale: float) -> None:
     aside = 0.09 * (geometry.base_radius + geometry.platform_radius)
     for joints, name, colour in ((geometry.base_joints, "B", STEEL), (platform_joints, "M", PLATE)):
         axes.scatter(*(scale * joints).T, color=colour, s=26, depthshade=False)
-        for k, joint in enumerate(joints, start=1):
-            outward = joint - joints.mean(axis=0)
-            away = aside * outward / max(float(np.linalg.norm(outward)), 1e-12)
-            place = joint + away + [0.0, 0.0, 0.6 * aside if name == "M" else -0.6 * aside]
+        for k, beside in enumerate(_beside(joints, aside), start=1):
+            place = beside + np.array([0.0, 0.0, 0.6 * aside if name == "M" else -0.6 * aside])
             label = axes.text(*(scale * place), f"{name}{k}", fontsize=9, color=colour, fontweight="bold", zorder=30)
             label.set(ha="center", va="center", path_effects=_halo())
 
@@ -287,6 +285,17 @@ def _rings(geometry: Geometry) -> tuple[Array, Array]:
     base = on_circle(geometry.base_radius, round_about)
     moving = on_circle(geometry.platform_radius, round_about) + geometry.platform_centre
     return base[: 0 if geometry.base else None], moving[: 0 if geometry.platform else None]
+
+
+def _beside(joints: Array, aside: float) -> Array:
+    """Where the names of joints (k, 3) stand: outside, and away from the nearest other joint where that is close."""
+    apart = joints[:, None] - joints[None]
+    d = np.linalg.norm(apart, axis=-1) + np.where(np.eye(len(joints)), np.inf, 0.0)
+    nearest = d.argmin(axis=1)
+    closeness = np.maximum(1.0 - d.min(axis=1) / (3.0 * aside), 0.0)[:, None]
+    away = apart[np.arange(len(joints)), nearest] / d.min(axis=1)[:, None]
+    outward = directions(joints - joints.mean(axis=0), (0.0, 0.0, 1.0))
+    return np.asarray(joints + aside * (outward + closeness * away))
 
 
 def _halo() -> list[Any]:

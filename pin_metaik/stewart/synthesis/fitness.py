@@ -122,6 +122,9 @@ class Fitness:
             own = {name: getattr(dimensions, name).tolist() for name in ("horn", "rod", "directions")}
             horn, rod = (each[0] if len(each) == 1 else tuple(each) for each in (own["horn"], own["rod"]))
             servos = replace(servos, horn=horn, rod=rod, directions=tuple(own["directions"]))
+            if dimensions.base_angles.size:
+                gone = dimensions.base_angles - geometry.base_angles
+                servos = servos.turned(gone[[base for base, _ in geometry.legs]])
         geometry = replace(
             geometry,
             base_radius=dimensions.base_radius,
