@@ -12,6 +12,7 @@ from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.platform.actuation import Links
 from pin_metaik.stewart.platform.geometry import Geometry
 from pin_metaik.stewart.platform.poses import PoseLike, as_poses, is_many
+from pin_metaik.stewart.platform.servo_legs import ServoLegs
 
 
 @checked
@@ -36,7 +37,7 @@ def inverse(geometry: Geometry, poses: PoseLike, branches: int | tuple[int, ...]
     if branches is not None:
         if geometry.servos is None:
             raise InvalidSetting("legs that are slides have no branches; those of servos have two each")
-        actuation = replace(geometry.servos, branches=branches)
+        actuation = ServoLegs(replace(geometry.servos, branches=branches))
     return actuation.links(geometry.b, leg_vectors(geometry, poses))
 
 

@@ -11,7 +11,7 @@ from pin_metaik.arguments import checked
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kernels.loading import load_judging
 from pin_metaik.stewart.platform.geometry import Geometry
-from pin_metaik.stewart.platform.limits import Limits, servo_rows
+from pin_metaik.stewart.platform.limits import Limits, limit_row, servo_rows
 from pin_metaik.stewart.platform.poses import PoseLike, as_poses
 
 UNLIMITED = (0.0, np.inf, -1.0, -1.0, 0.0)
@@ -38,8 +38,7 @@ def arguments_of(geometry: Geometry, limits: Limits | None) -> Arguments:
     servos = servo_rows(geometry, limits)
     if limits is None:
         return Arguments(base, arms, np.zeros((2, geometry.n, 3)), np.array(UNLIMITED), servos, pairs)
-    limits.fit(geometry)
-    return Arguments(base, arms, limits.sockets(geometry), limits.array(geometry), servos, pairs)
+    return Arguments(base, arms, limits.sockets(geometry), limit_row(limits, geometry), servos, pairs)
 
 
 def judged(

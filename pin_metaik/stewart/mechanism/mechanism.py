@@ -10,7 +10,7 @@ from pin_metaik.stewart.kinematics.conditioning import Dexterity
 from pin_metaik.stewart.mechanism.task import DesignTask
 from pin_metaik.stewart.mechanism.units import ANGLES, LENGTHS, Coordinate
 from pin_metaik.stewart.platform.geometry import Geometry
-from pin_metaik.stewart.platform.limits import Limits
+from pin_metaik.stewart.platform.limits import Limits, fit
 from pin_metaik.stewart.workspace.grid import Grid
 from pin_metaik.stewart.workspace.surveying import Watch, survey
 from pin_metaik.stewart.workspace.workspace import Workspace
@@ -52,7 +52,7 @@ class Mechanism:
             raise InvalidSetting(f"a mechanism has a name, got {self.name!r}")
         if self.unit not in LENGTHS:
             raise InvalidSetting(f"unit is one of {', '.join(LENGTHS)}, got {self.unit!r}")
-        self.limits.fit(self.geometry)
+        fit(self.limits, self.geometry)
 
     @property
     def metres(self) -> float:

@@ -22,7 +22,8 @@ from pin_metaik.arguments import checked
 from pin_metaik.output import writable
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.platform.geometry import Geometry
-from pin_metaik.stewart.platform.limits import LegLimits, ServoLimits
+from pin_metaik.stewart.platform.limits import LegLimits, ServoLimits, lengths
+from pin_metaik.stewart.platform.servos import each
 
 MASS = 1.0  # kg
 EFFORT, VELOCITY = 1000.0, 1.0  # N or N m, m/s or rad/s: URDF demands them, a mechanism does not say
@@ -33,7 +34,7 @@ COLOURS = {"grey": "0.35 0.36 0.38 1", "blue": "0.2 0.45 0.75 1", "orange": "0.9
 def to_urdf(mechanism: Mechanism) -> str:
     """URDF text of a mechanism: the same mechanism gives the same bytes."""
     geometry, limits = mechanism.geometry, mechanism.limits
-    _, longest = limits.lengths(geometry)
+    _, longest = lengths(limits, geometry)
     thickness = limits.distance or 0.04 * longest
     robot = ET.Element("robot", name=mechanism.name)
     robot.append(ET.Comment(" Written by pin_metaik. Loops are open: leg_i_end belongs on platform_end_i. "))
@@ -56,7 +57,7 @@ def to_urdf(mechanism: Mechanism) -> str:
         else:
             _servo(robot, i, geometry, limits, thickness)
         m = geometry.m[i - 1].tolist()
-        along = None if geometry.servos is None else (0.0, 0.0, float(geometry.servos.each("rod")[i - 1]))
+        along = None if geometry.servos is None else (0.0, 0.0, float(each(geometry.servos, "rod")[i - 1]))
         for end, parent, place in ((f"leg_{i}_end", f"leg_{i}_rod", along), (f"platform_end_{i}", "platform", m)):
             ET.SubElement(robot, "link", name=end)
             _joint(robot, f"{end}_joint", "fixed", parent, end, place)
@@ -86,7 +87,7 @@ def _servo(robot: ET.Element, i: int, geometry: Geometry, limits: ServoLimits, t
     """Leg i as the joint of a servo and two of a rod; its end is the far end of the rod."""
     servos = geometry.servos
     assert servos is not None
-    horn, rod = (float(servos.each(name)[i - 1]) for name in ("horn", "rod"))
+    horn, rod = (float(each(servos, name)[i - 1]) for name in ("horn", "rod"))
     arm = ET.SubElement(robot, "link", name=f"leg_{i}_horn")
     middle, along_x = (horn / 2, 0.0, 0.0), (0.0, pi / 2, 0.0)
     _inertial(arm, thickness / 2, horn, middle, along_x)

@@ -9,10 +9,10 @@ in m or an angle in rad.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.optimize.space import Array
 
@@ -53,15 +53,12 @@ class Links:
         return f"the rod of leg {leg + 1} is {abs(short):.6g} m too {'short' if short > 0.0 else 'long'}"
 
 
-@runtime_checkable
 class Actuation(Protocol):
     """What moves the legs: between legs from base to platform joint, their links and their coordinates."""
 
-    upright: tuple[float, float, float]
-    """The axis that a link's first joint has by default, in the frame ``in_first_joint`` uses."""
-
-    def check(self, legs: int) -> None:
-        """Raise InvalidGeometry unless it can actuate so many legs."""
+    @property
+    def upright(self) -> Array:
+        """The axes (3,) or (n, 3) that the first joints of links have by default, as ``in_first_joint`` has them."""
 
     def span(self) -> tuple[float, float] | None:
         """Least and greatest distance in m that a leg can have by its parts alone; None: its limits say."""
@@ -80,10 +77,10 @@ class Actuation(Protocol):
 class Slides:
     """Legs that change their length: linear actuators between base and platform joints (6-UPS)."""
 
-    upright = (0.0, 0.0, 1.0)
-
-    def check(self, legs: int) -> None:
-        """Any number of legs may be slides."""
+    @property
+    def upright(self) -> Array:
+        """Square to the base."""
+        return np.array([0.0, 0.0, 1.0])
 
     def span(self) -> None:
         """Their limits say how long they are."""
@@ -102,10 +99,10 @@ class Slides:
         return directions(links.vectors, self.upright)
 
 
-def directions(vectors: Array, otherwise: tuple[float, float, float]) -> Array:
+def directions(vectors: Array, otherwise: ArrayLike) -> Array:
     """Unit vectors (..., 3); those of no length become another direction."""
     d = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(np.divide(vectors, d, out=np.full_like(vectors, otherwise), where=d > 0.0))
+    return np.asarray(np.divide(vectors, d, out=np.full_like(vectors, np.asarray(otherwise)), where=d > 0.0))
 
 
 SLIDES = Slides()

@@ -22,6 +22,7 @@ from pin_metaik.arguments import array, checked, checked_as, instance, number, s
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.platform.actuation import SLIDES, Actuation
+from pin_metaik.stewart.platform.servo_legs import ServoLegs
 from pin_metaik.stewart.platform.servos import Servos
 
 FEWEST_LEGS, MOST_LEGS = 3, 6
@@ -72,7 +73,8 @@ class Geometry:
         legs = _legs(self.legs, len(self.base_joints), len(self.platform_joints))
         object.__setattr__(self, "legs", legs)
         instance((Servos, type(None)), servos=self.servos)
-        self.actuation.check(self.n)
+        if self.servos is not None and self.servos.legs != self.n:
+            raise InvalidGeometry(f"servos have {self.servos.legs} axes for {self.n} legs: one each")
 
     @classmethod
     @checked_as(InvalidGeometry)
@@ -111,10 +113,10 @@ class Geometry:
         """Number of legs."""
         return len(self.legs)
 
-    @property
+    @cached_property
     def actuation(self) -> Actuation:
-        """What moves the legs: slides, or servos."""
-        return self.servos or SLIDES
+        """What the legs are: slides, or rods moved by servos."""
+        return SLIDES if self.servos is None else ServoLegs(self.servos)
 
     @property
     def type(self) -> str:

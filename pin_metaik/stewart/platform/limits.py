@@ -5,20 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 from math import cos, pi, sin
-from typing import ClassVar, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
 from pin_metaik.arguments import array, checked, number
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
-from pin_metaik.stewart.platform.actuation import Actuation, Slides
 from pin_metaik.stewart.platform.geometry import Geometry
-from pin_metaik.stewart.platform.servos import Servos
 
 
 class PoseState(IntEnum):
-    """What a pose is to a platform: reached, or the first limit that forbids it, in the order they are looked at."""
+    """What a pose is to a platform: reached, or the first limit that forbids it.
+
+    They are looked at in this order, but for the angles of servos: a rod that reaches has one, which comes next.
+    """
 
     UNSEEN = 0
     """Not looked at: the survey was interrupted."""
@@ -67,7 +68,6 @@ NO_LIMIT = -2.0  # cosine that no angle of a servo is below, however it is round
 class JointLimits:
     """What legs of every kind are limited by: angles of their joints, and the distance between them."""
 
-    actuation: ClassVar[type[Actuation]]
     base_angle: float
     platform_angle: float
     distance: float
@@ -84,21 +84,6 @@ class JointLimits:
         """Whether anything but the lengths of the legs is limited."""
         return min(self.base_angle, self.platform_angle) < pi or self.distance > 0.0
 
-    def lengths(self, geometry: Geometry) -> tuple[float, float]:
-        """The least and the greatest distance in m that a leg leaves between its base and its platform joint."""
-        return geometry.actuation.span() or self.span
-
-    def array(self, geometry: Geometry) -> Array:
-        """The limits (5,) as the compiled loops take them."""
-        angles = [cos(angle) if angle < pi else -1.0 for angle in (self.base_angle, self.platform_angle)]
-        return np.array([*self.lengths(geometry), *angles, self.distance])
-
-    def fit(self, geometry: Geometry) -> None:
-        """Raise InvalidGeometry unless these are limits of such legs."""
-        if not isinstance(geometry.actuation, self.actuation):
-            kind, needed = ("servos", "ServoLimits") if geometry.servos else ("slides", "LegLimits")
-            raise InvalidGeometry(f"legs that are {kind} have {needed}, got {type(self).__name__}")
-
     @checked
     def sockets(self, geometry: Geometry) -> Array:
         """Unit axes (2, n, 3) of the joints that begin links and of the platform joints (platform frame).
@@ -106,10 +91,12 @@ class JointLimits:
         The first are in the base frame; those at the tip of a horn along the horn, the way it moves, and its axis.
 
         Raises:
-            InvalidGeometry: A leg has no length at ``home``, or does not reach it.
+            InvalidGeometry: Limits of another kind of legs; a leg has no length at ``home``, or does not reach it.
         """
+        fit(self, geometry)
         if self.home is None:
-            return np.array([[geometry.actuation.upright], [(0.0, 0.0, -1.0)]]) * np.ones((2, geometry.n, 1))
+            shape = (geometry.n, 3)
+            return np.array([np.broadcast_to(axes, shape) for axes in (geometry.actuation.upright, (0.0, 0.0, -1.0))])
         v = np.array(self.home) + geometry.m - geometry.b
         links = geometry.actuation.links(geometry.b, v[None])
         if links.why:
@@ -167,8 +154,6 @@ class LegLimits(JointLimits):
     dead_length: float | None = None
     speed: float | None = None
 
-    actuation: ClassVar[type[Actuation]] = Slides
-
     def __post_init__(self) -> None:
         self._read("shortest", "longest")
         if not self.shortest > 0.0:
@@ -216,8 +201,8 @@ class ServoLimits(JointLimits):
         distance: Least distance between the axes of two rods; horns are not looked at. Legs that share a joint are not
             compared.
         home: Position of P, with the platform level, at which the axes of all joints point along their rods. Without
-            it those of the horns point square to them, the way they move, and the others square to the platform. The
-            joint at a horn turns with it.
+            it those of the horns point square to them, the way they move (on branch -1 the other way), and the others
+            square to the platform. The joint at a horn turns with it.
         speed: How fast a servo can turn, rad/s; None: that is not looked at.
 
     Raises:
@@ -231,8 +216,6 @@ class ServoLimits(JointLimits):
     distance: float = 0.0
     home: tuple[float, float, float] | None = None
     speed: float | None = None
-
-    actuation: ClassVar[type[Actuation]] = Servos
 
     def __post_init__(self) -> None:
         self._read("lowest", "highest")
@@ -254,6 +237,24 @@ class ServoLimits(JointLimits):
 
 
 Limits: TypeAlias = LegLimits | ServoLimits
+
+
+def fit(limits: JointLimits, geometry: Geometry) -> None:
+    """Raise InvalidGeometry unless these are limits of such legs."""
+    kind, needed = ("slides", LegLimits) if geometry.servos is None else ("servos", ServoLimits)
+    if not isinstance(limits, needed):
+        raise InvalidGeometry(f"legs that are {kind} have {needed.__name__}, got {type(limits).__name__}")
+
+
+def lengths(limits: Limits, geometry: Geometry) -> tuple[float, float]:
+    """The least and the greatest distance in m that a leg leaves between its base and its platform joint."""
+    return geometry.actuation.span() or limits.span
+
+
+def limit_row(limits: Limits, geometry: Geometry) -> Array:
+    """The limits (5,) as the compiled loops take them."""
+    angles = [cos(angle) if angle < pi else -1.0 for angle in (limits.base_angle, limits.platform_angle)]
+    return np.array([*lengths(limits, geometry), *angles, limits.distance])
 
 
 def servo_rows(geometry: Geometry, limits: Limits | None) -> Array | None:

@@ -1,14 +1,4 @@
-"""Legs moved by servos (6-RSS): a horn on a shaft, and a rod of fixed length between its tip and the platform joint.
-
-The shaft of leg i stands in the base joint b_i along a unit axis a_i, and its horn of length h points along u_i at
-angle 0, along u_i cos(q) + w_i sin(q) at angle q, with w_i = a_i x u_i. A rod of length l reaches a platform joint at
-v_i from b_i if h^2 + |v_i|^2 - 2 h (u_i'v_i cos q + w_i'v_i sin q) = l^2: with r and phi the polar coordinates of v_i
-in the plane of the horn,
-
-    q = phi -+ arccos(c / r),   c = (|v_i|^2 + h^2 - l^2) / (2 h),
-
-one angle for each branch. Where |c| > r the rod is too short or too long (Eisele 2019 for axes in the base plane).
-"""
+"""Servos that move legs (6-RSS): horns on shafts whose axes are anywhere, and rods of fixed length."""
 
 from __future__ import annotations
 
@@ -19,15 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pin_metaik.arguments import array, number
+from pin_metaik.arguments import array, checked_as, number
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
-from pin_metaik.stewart.platform.actuation import Links
 
 LEVEL = 1e-9  # sine of the angle below which two directions count as one
 Vector = tuple[float, float, float]
 
 
+@checked_as(InvalidGeometry)
 @dataclass(frozen=True)
 class Servos:
     """Servos with horns and rods, one a leg. Lengths in m, angles in rad.
@@ -58,8 +48,6 @@ class Servos:
     zeros: tuple[Vector, ...] | None = None
     branches: int | tuple[int, ...] = 1
 
-    upright = (0.0, 1.0, 0.0)  # square to the horn, the way it moves
-
     def __post_init__(self) -> None:
         for name in ("horn", "rod"):
             object.__setattr__(self, name, _lengths(f"the {name} of a servo", getattr(self, name)))
@@ -72,28 +60,18 @@ class Servos:
             raise InvalidGeometry("servos have either directions or axes, one for each leg")
         if self.zeros is not None and self.axes is None:
             raise InvalidGeometry("zeros of servos go with axes; directions say where horns point at angle 0")
-        branches = self.branches
-        listed = (branches,) if isinstance(branches, (int, np.integer)) else tuple(branches)
-        if not listed or any(isinstance(one, bool) or one not in (1, -1) for one in listed):
-            raise InvalidGeometry(f"branches of servos are 1 or -1, got {branches!r}")
-        kept = int(listed[0]) if isinstance(branches, (int, np.integer)) else tuple(int(one) for one in listed)
-        object.__setattr__(self, "branches", kept)
-        self.check(self.legs)
+        if not set(np.ravel(self.branches).tolist()) <= {1, -1}:
+            raise InvalidGeometry(f"branches of servos are 1 or -1, got {self.branches!r}")
+        for name in ("horn", "rod", "zeros", "branches"):
+            value = getattr(self, name)
+            if isinstance(value, tuple) and len(value) != self.legs:
+                raise InvalidGeometry(f"{name} of servos: {len(value)} for {self.legs} axes")
+        _ = self.frames  # says what is wrong with axes and zeros
 
     @property
     def legs(self) -> int:
         """How many legs have an axis."""
         return len(self.directions or self.axes or ())
-
-    def check(self, legs: int) -> None:
-        """Raise InvalidGeometry unless there is an axis for each of so many legs, and numbers for all or each."""
-        for name in ("horn", "rod", "zeros", "branches"):
-            value = getattr(self, name)
-            if isinstance(value, tuple) and len(value) != self.legs:
-                raise InvalidGeometry(f"{name} of servos: {len(value)} for {self.legs} axes")
-        if legs != self.legs:
-            raise InvalidGeometry(f"servos have {self.legs} axes for {legs} legs: one each")
-        _ = self.frames
 
     @cached_property
     def frames(self) -> Array:
@@ -119,64 +97,26 @@ class Servos:
     @cached_property
     def rows(self) -> Array:
         """Each servo as the compiled loops take it: u, w, a, horn, rod, branch (n, 12)."""
-        parts = (self.frames.reshape(-1, 9), *(self.each(name) for name in ("horn", "rod", "branches")))
+        parts = (self.frames.reshape(-1, 9), *(each(self, name) for name in ("horn", "rod", "branches")))
         return np.column_stack(parts)
 
-    def span(self) -> tuple[float, float]:
-        """Least and greatest distance between a shaft and a platform joint, m."""
-        horn, rod = self.each("horn"), self.each("rod")
-        return float(np.abs(rod - horn).min()), float((rod + horn).max())
 
-    def links(self, b: Array, v: Array) -> Links:
-        """The servos' angles on their branches, the tips of their horns and the rods."""
-        horn, rod, branch = (self.each(name) for name in ("horn", "rod", "branches"))
-        x, y, along = (np.einsum("nc,knc->kn", self.frames[:, row], v) for row in range(3))
-        r = np.hypot(x, y)
-        phi = np.arctan2(y, x)
-        c = (r**2 + along**2 + horn**2 - rod**2) / (2.0 * horn)  # r cos(phi - q)
-        missing = np.where(c > r, np.hypot(along, r - horn) - rod, np.where(c < -r, np.hypot(along, r + horn) - rod, 0))
-        sine = np.sqrt(np.maximum((r - c) * (r + c), 0.0))  # r sin(phi - q), but for its sign
-        q = phi - branch * np.arctan2(sine, c)
-        closed = missing == 0.0
-        q = np.where(closed, (q + np.pi) % (2.0 * np.pi) - np.pi, np.nan)
-        cos, sin = (np.where(closed, value, 0.0) for value in (np.cos(q), np.sin(q)))
-        nearest = np.where(missing < 0.0, -1.0, 1.0)  # towards the joint, or away from it
-        cos, sin = np.where(closed, cos, nearest * np.cos(phi)), np.where(closed, sin, nearest * np.sin(phi))
-        tips = horn[:, None] * (cos[..., None] * self.frames[:, 0] + sin[..., None] * self.frames[:, 1])
-        pushes = np.where(closed, branch * horn * sine / rod, np.nan)
-        return Links(q, b + tips, v - tips, pushes, missing)
+def each(servos: Servos, name: str) -> Array:
+    """The horn, the rod or the branch of each leg (n,)."""
+    return np.broadcast_to(np.asarray(getattr(servos, name), dtype=float), servos.legs)
 
-    def held(self, b: Array, q: Array) -> tuple[Array, Array]:
-        """From the tips of the horns, as long as the rods."""
-        horn = self.each("horn")[:, None]
-        tips = horn * (np.cos(q)[..., None] * self.frames[:, 0] + np.sin(q)[..., None] * self.frames[:, 1])
-        return b + tips, np.broadcast_to(self.each("rod"), q.shape)
 
-    def in_first_joint(self, links: Links) -> Array:
-        """Rods along the horn, the way it moves, and along the axis."""
-        u, w, a = (self.frames[:, row] for row in range(3))
-        cos, sin = np.cos(links.coordinates)[..., None], np.sin(links.coordinates)[..., None]
-        rods = links.vectors / np.linalg.norm(links.vectors, axis=-1, keepdims=True)
-        horns = np.stack((cos * u + sin * w, cos * w - sin * u, np.broadcast_to(a, rods.shape)), axis=-2)
-        directions: Array = np.einsum("knrc,knc->knr", horns, rods)
-        return directions
-
-    def turned(self, angles: Array) -> Servos:
-        """These servos, each turned about the vertical by an angle in rad (n,), as if its joint went round a circle."""
-        if self.axes is None:
-            return replace(self, directions=tuple((np.array(self.directions) + angles).tolist()))
-        cos, sin = np.cos(angles), np.sin(angles)
-        turned: dict[str, Any] = {}
-        for name in ("axes", "zeros"):
-            if getattr(self, name) is not None:
-                x, y, z = np.array(getattr(self, name)).T
-                ways = np.column_stack((cos * x - sin * y, sin * x + cos * y, z))
-                turned[name] = tuple(map(tuple, ways.tolist()))
-        return replace(self, **turned)
-
-    def each(self, name: str) -> Array:
-        """The horn, the rod or the branch of each leg (n,)."""
-        return np.broadcast_to(np.asarray(getattr(self, name), dtype=float), self.legs)
+def turned(servos: Servos, angles: Array) -> Servos:
+    """Servos, each turned about the vertical by an angle in rad (n,), as if its joint went round a circle."""
+    if servos.axes is None:
+        return replace(servos, directions=tuple((np.array(servos.directions) + angles).tolist()))
+    cos, sin = np.cos(angles), np.sin(angles)
+    ways: dict[str, Any] = {}
+    for name in ("axes", "zeros"):
+        if getattr(servos, name) is not None:
+            x, y, z = np.array(getattr(servos, name)).T
+            ways[name] = tuple(map(tuple, np.column_stack((cos * x - sin * y, sin * x + cos * y, z)).tolist()))
+    return replace(servos, **ways)
 
 
 def _numbers(name: str, values: Any) -> list[float]:

@@ -14,6 +14,7 @@ from pin_metaik.stewart.mechanism.ranges import Dimensions, Variables
 from pin_metaik.stewart.mechanism.task import DesignTask
 from pin_metaik.stewart.platform.geometry import Geometry, chords, gaps
 from pin_metaik.stewart.platform.limits import LegLimits, Limits, PoseState, excess
+from pin_metaik.stewart.platform.servos import turned
 from pin_metaik.stewart.workspace.surveying import explored, with_best_length
 from pin_metaik.stewart.workspace.workspace import Workspace
 
@@ -124,7 +125,7 @@ class Fitness:
             servos = replace(servos, horn=horn, rod=rod, directions=tuple(own["directions"]))
             if dimensions.base_angles.size:
                 gone = dimensions.base_angles - geometry.base_angles
-                servos = servos.turned(gone[[base for base, _ in geometry.legs]])
+                servos = turned(servos, gone[[base for base, _ in geometry.legs]])
         geometry = replace(
             geometry,
             base_radius=dimensions.base_radius,

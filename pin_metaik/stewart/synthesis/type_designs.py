@@ -21,6 +21,7 @@ from pin_metaik.stewart.mechanism.units import ANGLES
 from pin_metaik.stewart.platform.geometry import FEWEST_LEGS, MOST_LEGS, Geometry
 from pin_metaik.stewart.platform.layouts import NAMED, standard_geometry, tangential_servos
 from pin_metaik.stewart.platform.limits import LegLimits, Limits, ServoLimits
+from pin_metaik.stewart.platform.servos import each
 from pin_metaik.stewart.synthesis.design import Designed, design
 from pin_metaik.stewart.synthesis.fitness import task_of
 from pin_metaik.stewart.workspace.surveying import Watch
@@ -190,7 +191,7 @@ def compare_types(
     starts = [standard_geometry(type, *radii, legs=legs) for type in types]
     if servos is not None:
         _servo_types(types, legs)
-        horn, rod = (float(servos.each(name).mean()) for name in ("horn", "rod"))
+        horn, rod = (float(each(servos, name).mean()) for name in ("horn", "rod"))
         starts = [replace(start, servos=tangential_servos(start, horn, rod)) for start in starts]
     first = task.seed if rng is None else rng
     found: list[TypeDesign] = []

@@ -10,7 +10,7 @@ from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kernels.loading import load_bounds
 from pin_metaik.stewart.kinematics.judging import arguments_of
 from pin_metaik.stewart.platform.geometry import Geometry
-from pin_metaik.stewart.platform.limits import Limits
+from pin_metaik.stewart.platform.limits import Limits, lengths
 from pin_metaik.stewart.workspace.grid import Grid
 
 COVER = 12
@@ -138,7 +138,7 @@ def _ends(grid: Grid, spheres: Array) -> Array:
 def _sweep(grid: Grid, geometry: Geometry, limits: Limits) -> Array:
     """The box (2, 3) of P within ``longest`` of every b_i - R m_i, or of the middle of these where there is none."""
     spheres = geometry.b - geometry.m @ grid.rotations.transpose(0, 2, 1)  # (o, n, 3)
-    _, longest = limits.lengths(geometry)
+    _, longest = lengths(limits, geometry)
     low = (spheres.max(axis=1) - longest).min(axis=0)
     high = np.maximum((spheres.min(axis=1) + longest).max(axis=0), low)
     low[2] = _ends(grid, spheres)[0, 2]
