@@ -3,9 +3,26 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from pin_metaik.errors import MissingExtra
-from pin_metaik.stewart import Grid, LegLimits, Mechanism, design, draw, draw_history, pose_at, save_picture
+from pin_metaik.stewart import (
+    Grid,
+    LegLimits,
+    Mechanism,
+    design,
+    draw,
+    draw_above,
+    draw_history,
+    draw_motion,
+    follow,
+    leg_vectors,
+    load_mechanism,
+    pose_at,
+    save_picture,
+    straight,
+)
+from pin_metaik.stewart.show.picture import legs_at
 from tests.stewart.cases import reference, similar_hexagons, stroke
 
 pytest.importorskip("matplotlib")
@@ -65,3 +82,27 @@ def test_without_matplotlib_the_extra_is_named(monkeypatch):
     monkeypatch.setattr(builtins, "__import__", without)
     with pytest.raises(MissingExtra, match=r"a picture needs .*\[plots\]"):
         draw(reference())
+
+
+def test_legs_are_drawn_from_joint_to_joint_by_way_of_their_horns_or_cylinders():
+    for mechanism, height in ((reference(), 0.37), (load_mechanism("servo_sg90"), 0.115)):
+        pose = pose_at((0.003, 0.0, height), (0.02, 0.0, 0.05))
+        legs = legs_at(mechanism, pose)
+        geometry = mechanism.geometry
+        assert_allclose(legs[:, 0], geometry.b)
+        assert_allclose(legs[:, 2], geometry.b + leg_vectors(geometry, pose)[0], atol=1e-12)
+        if geometry.servos is not None:
+            assert_allclose(np.linalg.norm(legs[:, 1] - legs[:, 0], axis=1), geometry.servos.horn)
+            assert_allclose(np.linalg.norm(legs[:, 2] - legs[:, 1], axis=1), geometry.servos.rod)
+
+
+def test_servos_their_workspace_and_their_motion_are_drawn(tmp_path):
+    mechanism = replace(load_mechanism("servo_sg90"), grid=Grid((10, 10, 10)))
+    figure = draw(mechanism, mechanism.survey())
+    assert "GDI" in figure.axes[1].get_title()
+    save_picture(figure, tmp_path / "servos.png")
+    save_picture(draw_above(mechanism), tmp_path / "above.png")
+    motion = follow(mechanism.geometry, straight(pose_at((0, 0, 0.115)), pose_at((0, 0, 0.15)), 1.0), mechanism.limits)
+    figure = draw_motion(motion, mechanism)
+    assert figure.axes[0].get_ylabel() == "angle of servos (deg)"
+    save_picture(figure, tmp_path / "motion.png")
