@@ -181,7 +181,7 @@ def draw_motion(motion: Motion, mechanism: Mechanism) -> Figure:
     for axes in panels:
         axes.grid(alpha=0.3)
         axes.fill_between(times, 0, 1, where=bad, transform=axes.get_xaxis_transform(), color="#d0302020", step="mid")
-    panels[0].legend(fontsize=8, ncols=6, loc="center")
+    figure.legend(*panels[0].get_legend_handles_labels(), fontsize=8, ncols=6, loc="outside lower center")
     shaded = "; shaded: beyond a limit" if bad.any() else ""
     panels[0].set_title(f"{mechanism.name}: {legs} along the way (dashed: limits{shaded})", fontsize=11)
     return figure
