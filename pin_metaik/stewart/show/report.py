@@ -42,7 +42,8 @@ def describe(mechanism: Mechanism) -> Lines:
         shown = ", ".join(f"{degrees(angle):.6g}" for angle in getattr(geometry, f"{side}_angles"))
         lines.append((side, f"radius {in_unit(mechanism, getattr(geometry, f'{side}_radius'))}, joints at {shown} deg"))
     if any(geometry.reference):
-        lines.append(("reference", f"{in_unit(mechanism, geometry.reference)} from the centre of the platform"))
+        origin = "the centre of the platform" if geometry.platform is None else "where its joints are counted from"
+        lines.append(("reference", f"{in_unit(mechanism, geometry.reference)} from {origin}"))
     lines.append(("joint gap", in_unit(mechanism, geometry.joint_gap)))
     if isinstance(limits, ServoLimits):
         lines += _servos(mechanism)

@@ -40,7 +40,7 @@ def random_6x6(rng):
 
 @pytest.mark.parametrize(("case", "count"), [(FOUR, 4), (SIXTEEN, 16)])
 @pytest.mark.parametrize("seed", [0, 1])
-def test_assemblies_with_small_basins_are_found_whatever_the_seed(case, count, seed):
+def test_assemblies_with_small_basins_are_found_whatever_the_seed(case, count, seed):  # N6
     geometry, lengths = case
     found = all_forward(geometry, lengths, rng=seed)
     assert len(found) == count
@@ -49,7 +49,7 @@ def test_assemblies_with_small_basins_are_found_whatever_the_seed(case, count, s
     assert_allclose(leg_lengths(geometry, found), np.tile(lengths, (count, 1)), atol=1e-13)
 
 
-def test_random_platforms_have_every_assembly_and_its_mirror_image():
+def test_random_platforms_have_every_assembly_and_its_mirror_image():  # N8
     rng = np.random.default_rng(0)
     for _ in range(40):
         geometry = random_6x6(rng)

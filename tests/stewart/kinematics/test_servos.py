@@ -54,7 +54,7 @@ def derivative(f, x, h):
 
 
 @pytest.mark.parametrize("branches", BRANCHES)
-def test_rods_keep_their_lengths(platform, branches):
+def test_rods_keep_their_lengths(platform, branches):  # N21
     poses = servo_poses(10_000, platform)
     q = inverse(platform, poses, branches).coordinates
     assert not np.isnan(q).any()
@@ -66,7 +66,7 @@ def test_rods_keep_their_lengths(platform, branches):
 
 
 @pytest.mark.parametrize("branches", BRANCHES)
-def test_forward_of_inverse_is_the_pose_on_either_branch(platform, branches):
+def test_forward_of_inverse_is_the_pose_on_either_branch(platform, branches):  # N21
     poses = servo_poses(10_000, platform)
     start = poses @ pose_at((0.002, -0.001, 0.001), (0.02, 0.01, -0.02))
     found = forward(platform, inverse(platform, poses, branches).coordinates, start)

@@ -18,6 +18,7 @@ from pin_metaik.stewart import (
     Ranges,
     design,
     leg_lengths,
+    load_mechanism,
     pose_at,
     standard_geometry,
     survey,
@@ -56,7 +57,7 @@ def random_platform(rng):
     ("stroke", "volume", "gdi"),
     [(0.12, 3.242e6, 0.6710), (0.02, 14760, 0.6788), (0.01, 1844, 0.6789), (0.005, 230.5, 0.6789)],
 )
-def test_the_reference_is_measured_at_every_stroke(stroke, volume, gdi):
+def test_the_reference_is_measured_at_every_stroke(stroke, volume, gdi):  # N1
     found = survey(reference().geometry, LegLimits(0.41 - stroke / 2, 0.41 + stroke / 2))
     assert_allclose(MM3 * found.volume, volume, rtol=0.003)
     assert_allclose(found.gdi, gdi, atol=0.0005)
@@ -75,6 +76,12 @@ def test_a_camera_hexapod_of_a_few_millimetres_is_measured():
     plain = volume_by_plain_grid(geometry, limits, low - aside, high + aside, 80)
     assert_allclose(found.volume, plain, rtol=0.015)
     assert found.cells_reached > 10 * LEAST
+
+
+def test_the_camera_hexapod_of_the_rubin_observatory_has_its_workspace():  # N2
+    mechanism = load_mechanism("rubin_camera")
+    assert_allclose(leg_lengths(mechanism.geometry, pose_at((0, 0, -2.7584))).mean(), 0.492963, atol=1e-6)
+    assert_allclose(1e6 * mechanism.survey().volume, 31.80, rtol=0.005)  # cm3
 
 
 def test_the_box_holds_what_the_lengths_allow_and_no_more():
@@ -186,7 +193,7 @@ def test_legs_without_stroke_leave_room_for_a_point():
         ("3x3", 0.3, (0.15, 0.45), (0.396, 0.404)),
     ],
 )
-def test_a_design_is_as_large_as_a_fine_grid_round_it_says(kind, radius, span, legs):
+def test_a_design_is_as_large_as_a_fine_grid_round_it_says(kind, radius, span, legs):  # N4, N5
     task = DesignTask(Ranges(base_radius=span, platform_radius=span), evaluations=400, algorithm="pso")
     mechanism = Mechanism("narrow", standard_geometry(kind, radius, radius), LegLimits(*legs), task=task)
     found = design(mechanism)
