@@ -55,7 +55,7 @@ def body_of(workspace: Workspace, scale: float, unit: str) -> Body:
     return Body(np.asarray(some.any(axis=-1)), nu, centres, labels, f"workspace: {1e6 * workspace.volume:.4g} cm³")
 
 
-def draw_body(figure: Any, axes: Any, body: Body) -> None:
+def draw_body(figure: Any, axes: Any, body: Body, opacity: float = 1.0) -> None:
     """Draw a body's outer faces into 3D axes, coloured by nu, with a colour bar beside them."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
@@ -66,7 +66,8 @@ def draw_body(figure: Any, axes: Any, body: Body) -> None:
     colour = ScalarMappable(Normalize(nu.min(), nu.max()), "viridis")
     rgba = colour.to_rgba(nu)
     rgba[:, :3] *= light[:, None]
-    axes.add_collection3d(polygons(faces, facecolors=rgba, edgecolors=rgba, linewidths=0.2))
+    rgba[:, 3] = opacity
+    axes.add_collection3d(polygons(faces, facecolors=rgba, edgecolors=rgba, linewidths=0.2 * opacity))
     corners = faces.reshape(-1, 3)
     for name, low, high in zip("xyz", corners.min(axis=0), corners.max(axis=0), strict=True):
         getattr(axes, f"set_{name}lim")(low, high)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pinocchio as pin
 
 from pin_metaik.arguments import checked, instance
 from pin_metaik.errors import InvalidSetting, MissingExtra
@@ -22,6 +23,7 @@ from pin_metaik.stewart.platform.limits import LegLimits
 from pin_metaik.stewart.platform.poses import PoseLike, one_pose, pose_at
 from pin_metaik.stewart.show.body import body_of, draw_body, polygons
 from pin_metaik.stewart.synthesis.design import Designed
+from pin_metaik.stewart.workspace.singularity import singularities
 from pin_metaik.stewart.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -30,7 +32,8 @@ if TYPE_CHECKING:
 FORMATS = (".png", ".svg", ".pdf")
 STEEL, PLATE, ROD = "#4a4f57", "#e07b1a", "#2f6fb0"
 TAG = {"boxstyle": "circle,pad=0.15", "facecolor": "white", "edgecolor": STEEL, "linewidth": 0.6}
-FLATTEST = 0.2  # of the longest side: what is drawn flatter than that has no room for its numbers
+RED, THROUGH = "#c02020", 0.25  # poses where det J changes sign, and how opaque the workspace round them is
+FLATTEST, THINNEST = 0.2, 0.4  # of the longest side: below, and across, there is no room for the numbers
 VIEW = {"elev": 18.0, "azim": -60.0}
 
 
@@ -83,7 +86,8 @@ def draw_into(
     Args:
         figure: Where to draw.
         mechanism: What to draw.
-        workspace: Its workspace, if that is to be drawn too: its cells, coloured by nu.
+        workspace: Its workspace, if that is to be drawn too: its cells, coloured by nu, and red points where det J
+            changes sign between them.
         pose: Where the platform is; default: in the middle of the workspace, or level at half stroke.
 
     Raises:
@@ -99,9 +103,11 @@ def draw_into(
     _dress(axes, tuple(f"{name} ({unit})" for name in "xyz"))
     if workspace is not None:
         axes = figure.add_subplot(1, 2, 2, projection="3d")
-        body = body_of(workspace, scale, unit)
-        draw_body(figure, axes, body)
+        body, crossed = body_of(workspace, scale, unit), _crossed(workspace, scale)
+        draw_body(figure, axes, body, THROUGH if len(crossed) else 1.0)
+        axes.scatter(*crossed.T, color=RED, s=5, depthshade=False)
         gdi = "no GDI: singular" if workspace.gdi is None else f"GDI {workspace.gdi:.3f}"
+        gdi += "; red: det J changes sign" if len(crossed) else ""
         axes.set_title(f"{body.title}, {gdi}", fontsize=11)
         _dress(axes, body.labels)
 
@@ -235,6 +241,14 @@ def _figure(size: tuple[float, float]) -> Figure:
     return Figure(figsize=size, layout="constrained")
 
 
+def _crossed(workspace: Workspace, scale: float) -> Array:
+    """Where det J changes sign between neighbouring poses, in the coordinates that the workspace is drawn in (c, 3)."""
+    poses = singularities(workspace).crossings
+    if not workspace.at_one_position:
+        return np.asarray(scale * poses[:, :3, 3])
+    return np.degrees([pin.rpy.matrixToRpy(pose[:3, :3]) for pose in poses]).reshape(-1, 3)
+
+
 def _middle(mechanism: Mechanism, workspace: Workspace | None) -> Array:
     if workspace is not None:
         return pose_at(np.median(workspace.positions, axis=0))
@@ -317,5 +331,7 @@ def _dress(axes: Any, labels: tuple[str, ...]) -> None:
         getattr(axes, f"set_{name}label")(label, fontsize=9)
         axes.locator_params(axis=name, nbins=5 if extent > 0.4 * extents.max() else 3)
     axes.tick_params(labelsize=8)
-    axes.set_box_aspect(np.maximum(extents, FLATTEST * extents.max()), zoom=0.9)
+    tall = extents[2] == extents.max()
+    least = np.array([THINNEST, THINNEST, FLATTEST]) * extents.max()
+    axes.set_box_aspect(np.maximum(extents, least), zoom=0.8 if tall else 0.9)  # below what is tall stand two labels
     axes.view_init(**VIEW)

@@ -14,6 +14,7 @@ from pin_metaik.stewart.kinematics.trajectory import Trajectory, follow
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.platform.limits import LegLimits, PoseState, ServoLimits
 from pin_metaik.stewart.platform.poses import PoseLike, one_pose
+from pin_metaik.stewart.platform.servos import each
 from pin_metaik.stewart.show.notes import in_unit, notes
 from pin_metaik.stewart.show.values import pose_values
 from pin_metaik.stewart.synthesis.design import Designed
@@ -123,6 +124,9 @@ def at_pose(mechanism: Mechanism, pose: PoseLike) -> Lines:
     if mechanism.geometry.servos is not None:
         shares = ("-" if share is None else f"{share:.4f}" for share in found["transmission"])
         lines.append(("transmission", ", ".join(shares)))
+        other = tuple((-each(mechanism.geometry.servos, "branches").astype(int)).tolist())
+        angles = inverse(mechanism.geometry, pose, other).coordinates
+        lines.append(("on the other branch", of_legs(mechanism, angles)))
     rows = (", ".join("-" if value is None else f"{value:9.6f}" for value in row) for row in found["jacobian"])
     lines += [("Jacobian" if i == 1 else "", f"leg {i}: {row}") for i, row in enumerate(rows, start=1)]
     if found["nearest_legs"] is not None:

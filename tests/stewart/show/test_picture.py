@@ -20,7 +20,9 @@ from pin_metaik.stewart import (
     load_mechanism,
     pose_at,
     save_picture,
+    singularities,
     straight,
+    survey,
 )
 from pin_metaik.stewart.show.picture import legs_at
 from tests.stewart.cases import reference, similar_hexagons, stroke
@@ -106,3 +108,15 @@ def test_servos_their_workspace_and_their_motion_are_drawn(tmp_path):
     figure = draw_motion(motion, mechanism)
     assert figure.axes[0].get_ylabel() == "angle of servos (deg)"
     save_picture(figure, tmp_path / "motion.png")
+
+
+def test_where_det_J_changes_sign_is_drawn_in_red():
+    turning = with_grid(reference(), counts=(1, 1, 1), steps=(3, 3, 9), **dict.fromkeys(("roll", "pitch"), (-0.3, 0.3)))
+    turning = replace(turning, grid=replace(turning.grid, x=(0, 0), y=(0, 0), z=(0.37, 0.37), yaw=(-2.0, 2.0)))
+    workspace = survey(turning.geometry, LegLimits(0.2, 0.6), turning.grid)
+    axes = draw(turning, workspace).axes[1]
+    assert "det J changes sign" in axes.get_title()
+    (points,) = [each for each in axes.collections if hasattr(each, "_offsets3d")]
+    drawn = np.column_stack(points._offsets3d)
+    assert len(drawn) == len(singularities(workspace).crossings) > 0
+    assert_allclose(np.abs(drawn[:, 2]), 90.0, atol=20.0)  # degrees of yaw
