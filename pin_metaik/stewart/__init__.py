@@ -1,7 +1,8 @@
 """General Stewart platforms: analysis and dimensional optimisation, after Inner and Kucuk (TOK 2014).
 
-Lengths are in m and angles in rad everywhere but in files, which say their own units. Poses are those of the point P of
-the platform in the base frame: ``pin.SE3``, (4, 4), or many (k, 4, 4).
+Their legs are linear actuators, or rods moved by servos. Lengths are in m and angles in rad everywhere but in files,
+which say their own units. Poses are those of the point P of the platform in the base frame: ``pin.SE3``, (4, 4), or
+many (k, 4, 4).
 
 from pin_metaik import stewart
 

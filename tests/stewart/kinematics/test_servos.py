@@ -93,6 +93,11 @@ def test_at_their_makers_home_heights_horns_are_level(name, height, level):
     assert np.abs(q).max() < level  # the second maker rounds his height to a millimetre
 
 
+def test_with_level_horns_a_platform_is_as_high_as_its_maker_says():
+    found = forward(load_mechanism("servo_esp32").geometry, np.zeros(6)).pose
+    assert_allclose(found, pose_at((0, 0, 0.132943591247488)), atol=1e-12)
+
+
 def test_angles_are_those_that_a_search_along_the_arc_finds(platform):
     servos, pose = platform.servos, servo_poses(1, platform, 3)[0]
     ends = leg_vectors(platform, pose)[0]
