@@ -372,9 +372,28 @@ def judge_poses(
             )
 
 
-@jit("void(f8[:,:,::1], f8[:,:,::1], i8[:,::1], f8[:,::1])")
-def distances(starts: Floats, links: Floats, pairs: Ints, out: Floats) -> None:
-    """Distances (k, p) between the axes of the pairs of links (p, 2), given by their starts and vectors (k, n, 3)."""
-    for k in range(starts.shape[0]):
+@jit("void(f8[:,::1], f8[:,::1], f8[:,:,::1], f8[::1], f8[:,::1]?, i8[:,::1], f8[:,:,::1], f8[:,::1])")
+def distances(
+    base: Floats,
+    arms: Floats,
+    sockets: Floats,
+    limits: Floats,
+    servos: Floats | None,
+    pairs: Ints,
+    poses: Floats,
+    out: Floats,
+) -> None:
+    """Distances (k, p) between the axes of pairs of links (p, 2) at poses (k, 4, 4); NaN where a rod does not reach."""
+    n = base.shape[0]
+    legs, lengths = np.empty((n, 3)), np.empty(n)
+    starts, axes, divisors = base, sockets[0], lengths
+    if servos is not None:
+        starts, axes, divisors = np.empty((n, 3)), np.empty((n, 3)), np.empty(n)
+    for k in range(poses.shape[0]):
+        turn(poses[k], arms, legs)
+        for i in range(n):
+            for c in range(3):
+                legs[i, c] += poses[k, c, 3] - base[i, c]
+        reached = reach(base, sockets[0], limits, servos, legs, starts, axes, lengths, divisors) == POSITIVE
         for p in range(pairs.shape[0]):
-            out[k, p] = segment_distance(starts[k], links[k], pairs[p, 0], pairs[p, 1])
+            out[k, p] = segment_distance(starts, legs, pairs[p, 0], pairs[p, 1]) if reached else math.nan

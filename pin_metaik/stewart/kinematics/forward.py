@@ -95,7 +95,8 @@ def forward(geometry: Geometry, coordinates: ArrayLike, start: PoseLike | None =
 
 def newton(geometry: Geometry, q: Array, T: Array) -> Forward:
     """Newton from poses (k, 4, 4), in place, to coordinates (k, n)."""
-    starts, d = (np.require(part, requirements=("C", "W")) for part in geometry.actuation.held(geometry.b, q))
+    held, rods = geometry.actuation.held(geometry.b, q)
+    starts, d = np.array(held, order="C"), np.array(rods, order="C")  # writable, as the loop wants them
     iterations, errors, states = np.zeros(len(q), dtype=np.int64), np.zeros(len(q)), np.zeros(len(q), dtype=np.int8)
     tolerance = TOLERANCE * float(d.max(initial=0.0))
     arms, scale = geometry.arrays[1], geometry.platform_radius
@@ -109,19 +110,18 @@ def as_coordinates(geometry: Geometry, coordinates: ArrayLike) -> Array:
     Raises:
         InvalidConfiguration: Of the wrong shape, not finite, or lengths that are not above zero.
     """
-    words, unit = _words(geometry), "m" if geometry.servos is None else "rad"
     try:
         q = np.array(coordinates, dtype=float, ndmin=2, order="C")
     except (TypeError, ValueError, OverflowError):
-        raise InvalidConfiguration(f"{words} are numbers in {unit}, got {coordinates!r}") from None
+        raise InvalidConfiguration(f"{_words(geometry)} are numbers, got {coordinates!r}") from None
     if q.ndim != 2 or q.shape[1] != geometry.n:
         raise InvalidConfiguration(
-            f"{words} have shape ({geometry.n},) or (k, {geometry.n}), got {np.shape(coordinates)}"
+            f"{_words(geometry)} have shape ({geometry.n},) or (k, {geometry.n}), got {np.shape(coordinates)}"
         )
-    if geometry.servos is None and not (wrong := ~(np.isfinite(q) & (q > 0.0))).sum() == 0:
-        raise InvalidConfiguration(f"{words} are above zero and finite, got {q[wrong][0]}")
-    if not np.isfinite(q).all():
-        raise InvalidConfiguration(f"{words} are finite, got {q[~np.isfinite(q)][0]}")
+    fine = np.isfinite(q) & (q > 0.0) if geometry.servos is None else np.isfinite(q)
+    if not fine.all():
+        least = "above zero and " if geometry.servos is None else ""
+        raise InvalidConfiguration(f"{_words(geometry)} are {least}finite, got {q[~fine][0]}")
     return q
 
 

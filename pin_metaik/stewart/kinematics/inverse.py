@@ -38,7 +38,19 @@ def inverse(geometry: Geometry, poses: PoseLike, branches: int | tuple[int, ...]
         if geometry.servos is None:
             raise InvalidSetting("legs that are slides have no branches; those of servos have two each")
         actuation = ServoLegs(replace(geometry.servos, branches=branches))
-    return actuation.links(geometry.b, leg_vectors(geometry, poses))
+    return actuation.links(geometry.b, vectors_at(geometry, as_poses(poses)))
+
+
+def links_at(geometry: Geometry, T: Array) -> Links:
+    """The legs at poses (k, 4, 4) that are known to be poses."""
+    return geometry.actuation.links(geometry.b, vectors_at(geometry, T))
+
+
+def vectors_at(geometry: Geometry, T: Array) -> Array:
+    """v_i = P + R m_i - b_i at poses (k, 4, 4) that are known to be poses: (k, n, 3)."""
+    R, P = T[:, :3, :3], T[:, None, :3, 3]
+    v: Array = P + geometry.m @ R.transpose(0, 2, 1) - geometry.b
+    return v
 
 
 @checked
@@ -48,10 +60,7 @@ def leg_vectors(geometry: Geometry, poses: PoseLike) -> Array:
     Raises:
         InvalidTarget: Not poses.
     """
-    T = as_poses(poses)  # (k, 4, 4)
-    R, P = T[:, :3, :3], T[:, None, :3, 3]
-    v: Array = P + geometry.m @ R.transpose(0, 2, 1) - geometry.b  # v_i = P + R m_i - b_i
-    return v
+    return vectors_at(geometry, as_poses(poses))
 
 
 @checked

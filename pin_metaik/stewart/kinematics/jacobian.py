@@ -7,7 +7,7 @@ import numpy as np
 from pin_metaik.arguments import checked
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kinematics.conditioning import DEFAULT, Dexterity, characteristic_length
-from pin_metaik.stewart.kinematics.inverse import inverse
+from pin_metaik.stewart.kinematics.inverse import links_at
 from pin_metaik.stewart.platform.geometry import Geometry
 from pin_metaik.stewart.platform.poses import PoseLike, as_poses, is_many
 
@@ -25,14 +25,18 @@ def velocity_equation(geometry: Geometry, poses: PoseLike) -> tuple[Array, Array
     Raises:
         InvalidTarget: Not poses.
     """
-    T = as_poses(poses)
-    links = inverse(geometry, T)
+    A, B = _equation(geometry, as_poses(poses))
+    return (A, B) if is_many(poses) else (A[0], B[0])
+
+
+def _equation(geometry: Geometry, T: Array) -> tuple[Array, Array]:
+    """A (k, n, 6) and B (k, n) at poses (k, 4, 4)."""
+    links = links_at(geometry, T)
     v = links.vectors  # (k, n, 3)
     d = np.linalg.norm(v, axis=-1, keepdims=True)
     z = np.divide(v, d, out=np.zeros_like(v), where=d > 0.0)
     Rm = geometry.m @ T[:, :3, :3].transpose(0, 2, 1)
-    A = np.concatenate((z, np.cross(Rm, z)), axis=-1)
-    return (A, links.pushes) if is_many(poses) else (A[0], links.pushes[0])
+    return np.concatenate((z, np.cross(Rm, z)), axis=-1), links.pushes
 
 
 @checked
@@ -47,9 +51,10 @@ def jacobian(geometry: Geometry, poses: PoseLike) -> Array:
     Raises:
         InvalidTarget: Not poses.
     """
-    A, B = velocity_equation(geometry, poses)
+    A, B = _equation(geometry, as_poses(poses))
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(A / B[..., None])
+        J: Array = A / B[..., None]
+    return J if is_many(poses) else J[0]
 
 
 @checked
@@ -62,9 +67,9 @@ def transmission(geometry: Geometry, poses: PoseLike) -> Array:
     Raises:
         InvalidTarget: Not poses.
     """
-    _, B = velocity_equation(geometry, poses)
-    horns = 1.0 if geometry.servos is None else np.asarray(geometry.servos.horn)
-    return np.asarray(np.abs(B) / horns)
+    _, B = _equation(geometry, as_poses(poses))
+    shares: Array = np.abs(B) / (1.0 if geometry.servos is None else np.asarray(geometry.servos.horn))
+    return shares if is_many(poses) else shares[0]
 
 
 @checked

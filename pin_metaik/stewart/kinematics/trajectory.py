@@ -13,7 +13,7 @@ from pin_metaik.errors import InvalidTarget
 from pin_metaik.optimize.settings import few, within
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kinematics.conditioning import DEFAULT, Dexterity, characteristic_length, measure
-from pin_metaik.stewart.kinematics.inverse import inverse
+from pin_metaik.stewart.kinematics.inverse import links_at
 from pin_metaik.stewart.kinematics.jacobian import jacobian
 from pin_metaik.stewart.kinematics.judging import judge_poses
 from pin_metaik.stewart.platform.geometry import Geometry
@@ -193,7 +193,7 @@ def follow(
     with np.errstate(invalid="ignore"):  # of a servo that does not reach
         rates = (jacobian(geometry, T) @ trajectory.twists[:, :, None])[..., 0]  # q_dot = J (v, omega)
     speed = None if limits is None else limits.speed
-    return Motion(geometry, trajectory, inverse(geometry, T).coordinates, rates, nu, states, length, speed)
+    return Motion(geometry, trajectory, links_at(geometry, T).coordinates, rates, nu, states, length, speed)
 
 
 def _differences(times: Array, poses: Array) -> Array:

@@ -51,7 +51,8 @@ def pose_values(mechanism: Mechanism, pose: PoseLike) -> dict[str, Any]:
     T = as_poses(pose)
     state = PoseState(int(judge_poses(geometry, mechanism.limits, T)[0]))
     distances = leg_distances(geometry, T)[0]
-    nearest = (geometry.pairs[distances.argmin()] + 1).tolist() if len(distances) else None
+    known = len(distances) > 0 and not np.isnan(distances).any()
+    nearest = (geometry.pairs[distances.argmin()] + 1).tolist() if known else None
     return {
         "pose": T[0].tolist(),
         **_plain_legs(geometry, inverse(geometry, T).coordinates[0]),
@@ -61,7 +62,7 @@ def pose_values(mechanism: Mechanism, pose: PoseLike) -> dict[str, Any]:
         "jacobian": _plain(jacobian(geometry, T[0])),
         **({} if geometry.servos is None else {"transmission": _plain(transmission(geometry, T[0]))}),
         "nearest_legs": nearest,
-        "leg_distance": float(distances.min()) if len(distances) else None,
+        "leg_distance": float(distances.min()) if known else None,
     }
 
 
