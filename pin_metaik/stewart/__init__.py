@@ -33,10 +33,13 @@ from pin_metaik.stewart.model.urdf import save_urdf, to_urdf
 from pin_metaik.stewart.platform.actuation import Links
 from pin_metaik.stewart.platform.geometry import Geometry, legs_of
 from pin_metaik.stewart.platform.layouts import NAMED, standard_geometry
-from pin_metaik.stewart.platform.limits import LegLimits, PoseState, ServoLimits
+from pin_metaik.stewart.platform.limits import LegLimits, ServoLimits
 from pin_metaik.stewart.platform.poses import pose_at
 from pin_metaik.stewart.platform.servos import Servos
-from pin_metaik.stewart.show.picture import draw, draw_above, draw_history, draw_into, draw_motion, save_picture
+from pin_metaik.stewart.platform.states import PoseState
+from pin_metaik.stewart.show.curves import draw_history, draw_motion
+from pin_metaik.stewart.show.figures import save_picture
+from pin_metaik.stewart.show.picture import draw, draw_above, draw_into
 from pin_metaik.stewart.show.progress import progress_bar
 from pin_metaik.stewart.synthesis.design import Designed, design
 from pin_metaik.stewart.synthesis.fitness import Fitness, Score

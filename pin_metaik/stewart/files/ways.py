@@ -13,8 +13,8 @@ from pin_metaik.errors import InvalidTarget
 from pin_metaik.optimize.space import Array
 from pin_metaik.output import writable
 from pin_metaik.stewart.kinematics.trajectory import Motion, Trajectory
-from pin_metaik.stewart.platform.limits import PoseState
 from pin_metaik.stewart.platform.poses import pose_at
+from pin_metaik.stewart.platform.states import PoseState
 
 COLUMNS = ("time", "x", "y", "z", "roll", "pitch", "yaw")
 NEEDED = COLUMNS[:4]

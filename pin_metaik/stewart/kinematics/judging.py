@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import cos, pi, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -11,10 +12,11 @@ from pin_metaik.arguments import checked
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kernels.loading import load_judging
 from pin_metaik.stewart.platform.geometry import Geometry
-from pin_metaik.stewart.platform.limits import Limits, limit_row, servo_rows
+from pin_metaik.stewart.platform.limits import Limits, lengths
 from pin_metaik.stewart.platform.poses import PoseLike, as_poses
 
 UNLIMITED = (0.0, np.inf, -1.0, -1.0, 0.0)
+NO_LIMIT = -2.0  # cosine that no angle of a servo is below, however it is rounded
 
 
 class Arguments(NamedTuple):
@@ -35,10 +37,10 @@ def arguments_of(geometry: Geometry, limits: Limits | None) -> Arguments:
         InvalidGeometry: Limits of another kind of legs, or a home that gives a joint no axis.
     """
     base, arms, pairs = geometry.arrays
-    servos = servo_rows(geometry, limits)
+    servos = _servo_rows(geometry, limits)
     if limits is None:
         return Arguments(base, arms, np.zeros((2, geometry.n, 3)), np.array(UNLIMITED), servos, pairs)
-    return Arguments(base, arms, limits.sockets(geometry), limit_row(limits, geometry), servos, pairs)
+    return Arguments(base, arms, limits.sockets(geometry), _limits_row(geometry, limits), servos, pairs)
 
 
 def judged(
@@ -59,3 +61,23 @@ def judge_poses(geometry: Geometry, limits: Limits, poses: PoseLike) -> NDArray[
         InvalidGeometry: Limits of another kind of legs, or a home that gives a joint no axis.
     """
     return judged(geometry, limits, as_poses(poses), geometry.platform_radius, 0)[0]
+
+
+def _limits_row(geometry: Geometry, limits: Limits) -> Array:
+    """The limits (5,) as the compiled loops take them."""
+    angles = [cos(angle) if angle < pi else -1.0 for angle in (limits.base_angle, limits.platform_angle)]
+    return np.array([*lengths(limits, geometry), *angles, limits.distance])
+
+
+def _servo_rows(geometry: Geometry, limits: Limits | None) -> Array | None:
+    """Servos and the angles they may have as the compiled loops take them (n, 15); None for slides.
+
+    After ``Servos.rows``: cosine and sine of the middle of these angles, and the cosine of half their range.
+    """
+    if geometry.servos is None:
+        return None
+    low, high = (-pi, pi) if limits is None else limits.span
+    half = 0.5 * (high - low)
+    middle = 0.5 * (low + high)
+    ends = [cos(middle), sin(middle), cos(half) if half < pi else NO_LIMIT]
+    return np.ascontiguousarray(np.column_stack((geometry.servos.rows, np.tile(ends, (geometry.n, 1)))))

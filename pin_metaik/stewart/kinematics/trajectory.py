@@ -17,8 +17,9 @@ from pin_metaik.stewart.kinematics.inverse import links_at
 from pin_metaik.stewart.kinematics.jacobian import jacobian
 from pin_metaik.stewart.kinematics.judging import judge_poses
 from pin_metaik.stewart.platform.geometry import Geometry
-from pin_metaik.stewart.platform.limits import Limits, PoseState
+from pin_metaik.stewart.platform.limits import Limits
 from pin_metaik.stewart.platform.poses import PoseLike, as_poses, one_pose
+from pin_metaik.stewart.platform.states import PoseState
 
 
 @checked_as(InvalidTarget)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
-from math import cos, pi, sin
+from math import pi
 from typing import TypeAlias
 
 import numpy as np
@@ -14,55 +13,7 @@ from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.platform.geometry import Geometry
 
-
-class PoseState(IntEnum):
-    """What a pose is to a platform: reached, or the first limit that forbids it.
-
-    They are looked at in this order, but for the angles of servos: a rod that reaches has one, which comes next.
-    """
-
-    UNSEEN = 0
-    """Not looked at: the survey was interrupted."""
-    POSITIVE = 1
-    """Reached, det J > 0; with fewer than six legs, just reached."""
-    NEGATIVE = 2
-    """Reached, det J < 0. Between poses of either sign lies a singularity; which sign it is means nothing."""
-    SINGULAR = 3
-    """Reached, but det J = 0: the legs do not hold the platform."""
-    TOO_SHORT = 4
-    TOO_LONG = 5
-    BASE_ANGLE = 6
-    PLATFORM_ANGLE = 7
-    TOO_CLOSE = 8
-    SERVO_ANGLE = 9
-
-    @property
-    def reached(self) -> bool:
-        """Whether the limits allow the pose."""
-        return PoseState.POSITIVE <= self <= PoseState.SINGULAR
-
-    @property
-    def words(self) -> str:
-        """In words, after "a pose that is"."""
-        return _WORDS[self]
-
-
-_WORDS = {
-    PoseState.UNSEEN: "not looked at",
-    PoseState.POSITIVE: "reached with det J > 0",
-    PoseState.NEGATIVE: "reached with det J < 0",
-    PoseState.SINGULAR: "singular",
-    PoseState.TOO_SHORT: "too near for a leg",
-    PoseState.TOO_LONG: "too far for a leg",
-    PoseState.BASE_ANGLE: "beyond the angle of a base joint",
-    PoseState.PLATFORM_ANGLE: "beyond the angle of a platform joint",
-    PoseState.TOO_CLOSE: "where two legs come too close",
-    PoseState.SERVO_ANGLE: "beyond the angle of a servo",
-}
-
-
 ROUNDING = 1e-12  # of a length: what decimals of a file leave
-NO_LIMIT = -2.0  # cosine that no angle of a servo is below, however it is rounded
 
 
 class JointLimits:
@@ -249,26 +200,6 @@ def fit(limits: JointLimits, geometry: Geometry) -> None:
 def lengths(limits: Limits, geometry: Geometry) -> tuple[float, float]:
     """The least and the greatest distance in m that a leg leaves between its base and its platform joint."""
     return geometry.actuation.span() or limits.span
-
-
-def limit_row(limits: Limits, geometry: Geometry) -> Array:
-    """The limits (5,) as the compiled loops take them."""
-    angles = [cos(angle) if angle < pi else -1.0 for angle in (limits.base_angle, limits.platform_angle)]
-    return np.array([*lengths(limits, geometry), *angles, limits.distance])
-
-
-def servo_rows(geometry: Geometry, limits: Limits | None) -> Array | None:
-    """Servos and the angles they may have as the compiled loops take them (n, 15); None for slides.
-
-    After ``Servos.rows``: cosine and sine of the middle of these angles, and the cosine of half their range.
-    """
-    if geometry.servos is None:
-        return None
-    low, high = (-pi, pi) if limits is None else limits.span
-    half = 0.5 * (high - low)
-    middle = 0.5 * (low + high)
-    ends = [cos(middle), sin(middle), cos(half) if half < pi else NO_LIMIT]
-    return np.ascontiguousarray(np.column_stack((geometry.servos.rows, np.tile(ends, (geometry.n, 1)))))
 
 
 def excess(shortest: float, longest: float, dead_length: float) -> float:

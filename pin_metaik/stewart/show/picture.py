@@ -1,67 +1,34 @@
-"""Pictures: a mechanism at a pose, its workspace coloured by dexterity, and the history of a design."""
+"""Pictures of a mechanism: at a pose, from above, and beside its workspace coloured by dexterity."""
 
 from __future__ import annotations
 
 from importlib import import_module
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pinocchio as pin
 
-from pin_metaik.arguments import checked, instance
-from pin_metaik.errors import InvalidSetting, MissingExtra
+from pin_metaik.arguments import checked
 from pin_metaik.optimize.space import Array
-from pin_metaik.output import writable
 from pin_metaik.stewart.kinematics.forward import level
 from pin_metaik.stewart.kinematics.inverse import inverse
-from pin_metaik.stewart.kinematics.trajectory import Motion
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.platform.actuation import directions
 from pin_metaik.stewart.platform.geometry import Geometry, on_circle
 from pin_metaik.stewart.platform.limits import LegLimits
 from pin_metaik.stewart.platform.poses import PoseLike, one_pose, pose_at
 from pin_metaik.stewart.show.body import body_of, draw_body, polygons
-from pin_metaik.stewart.synthesis.design import Designed
+from pin_metaik.stewart.show.figures import PLATE, ROD, STEEL, need_figure, new_figure
 from pin_metaik.stewart.workspace.singularity import singularities
 from pin_metaik.stewart.workspace.workspace import Workspace
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FORMATS = (".png", ".svg", ".pdf")
-STEEL, PLATE, ROD = "#4a4f57", "#e07b1a", "#2f6fb0"
 TAG = {"boxstyle": "circle,pad=0.15", "facecolor": "white", "edgecolor": STEEL, "linewidth": 0.6}
 RED, THROUGH = "#c02020", 0.25  # poses where det J changes sign, and how opaque the workspace round them is
 FLATTEST, THINNEST = 0.2, 0.4  # of the longest side: below, and across, there is no room for the numbers
 VIEW = {"elev": 18.0, "azim": -60.0}
-
-
-def need_plots() -> None:
-    """Make sure that pictures can be drawn, before anything is worked out for one.
-
-    Raises:
-        MissingExtra: matplotlib is not installed.
-    """
-    try:
-        import matplotlib.figure  # noqa: F401  # asked for, not used
-    except ImportError:
-        raise MissingExtra("a picture", "plots") from None
-
-
-@checked
-def picture_file(path: str | Path) -> Path:
-    """The path of a picture that can be written, before anything is worked out for it.
-
-    Raises:
-        MissingExtra: matplotlib is not installed.
-        InvalidSetting: Its ending is none of a picture.
-        CannotWrite: It cannot be written.
-    """
-    need_plots()
-    if Path(path).suffix.lower() not in FORMATS:
-        raise InvalidSetting(f"a picture ends in {', '.join(FORMATS)}, got {str(path)!r}")
-    return writable(path)
 
 
 @checked
@@ -72,7 +39,7 @@ def draw(mechanism: Mechanism, workspace: Workspace | None = None, pose: PoseLik
         InvalidTarget: Not a pose.
         MissingExtra: matplotlib is not installed.
     """
-    figure = _figure((11.0, 4.8) if workspace is not None else (6.8, 5.6))
+    figure = new_figure((11.0, 4.8) if workspace is not None else (6.8, 5.6))
     draw_into(figure, mechanism, workspace, pose)
     return figure
 
@@ -93,7 +60,7 @@ def draw_into(
     Raises:
         InvalidTarget: Not a pose.
     """
-    _need_figure(figure)
+    need_figure(figure)
     unit = mechanism.unit
     scale = 1.0 / mechanism.metres
     T = one_pose(_middle(mechanism, workspace) if pose is None else pose)
@@ -126,7 +93,7 @@ def draw_above(mechanism: Mechanism, pose: PoseLike | None = None) -> Figure:
     """
     T = one_pose(_middle(mechanism, None) if pose is None else pose)
     geometry, scale = mechanism.geometry, 1.0 / mechanism.metres
-    figure = _figure((6.4, 6.0))
+    figure = new_figure((6.4, 6.0))
     axes: Any = figure.add_subplot(aspect="equal")
     moved = T[:3, 3] + geometry.platform_joints @ T[:3, :3].T
     for i, (b, knee, end) in enumerate(legs_at(mechanism, T), start=1):
@@ -153,92 +120,6 @@ def draw_above(mechanism: Mechanism, pose: PoseLike | None = None) -> Figure:
     axes.margins(0.12)
     axes.grid(alpha=0.3)
     return figure
-
-
-@checked
-def draw_motion(motion: Motion, mechanism: Mechanism) -> Figure:
-    """What the legs do along a trajectory: their coordinates and rates over time with their limits, and dexterity.
-
-    Args:
-        motion: What ``follow`` found.
-        mechanism: Whose legs they are, for its limits and its unit.
-
-    Raises:
-        MissingExtra: matplotlib is not installed.
-    """
-    figure = _figure((7.2, 7.2))
-    panels = figure.subplots(3, sharex=True)
-    times, limits, (word, unit, one) = motion.trajectory.times, mechanism.limits, mechanism.coordinate
-    legs = "servos" if mechanism.geometry.servos else "legs"
-    curves = ((motion.coordinates / one, word, unit), (motion.rates / one, "rate", f"{unit}/s"))
-    for axes, (values, what, unit) in zip(panels, curves, strict=False):
-        for i, column in enumerate(values.T, start=1):
-            axes.plot(times, column, lw=1.4, label=f"leg {i}")
-        axes.set_ylabel(f"{what} of {legs} ({unit})")
-    speeds = () if limits.speed is None else (-limits.speed, limits.speed)
-    for axes, ends in zip(panels, (limits.span, speeds), strict=False):
-        for end in ends:
-            axes.axhline(end / one, color=STEEL, ls="--", lw=1)
-    panels[2].plot(times, motion.nu, color=PLATE)
-    panels[2].set_ylabel("dexterity nu")
-    panels[2].set_xlabel("time (s)")
-    panels[2].set_ylim(0.0, 1.0)
-    bad = ~motion.reached
-    for axes in panels:
-        axes.grid(alpha=0.3)
-        axes.fill_between(times, 0, 1, where=bad, transform=axes.get_xaxis_transform(), color="#d0302020", step="mid")
-    figure.legend(*panels[0].get_legend_handles_labels(), fontsize=8, ncols=6, loc="outside lower center")
-    shaded = "; shaded: beyond a limit" if bad.any() else ""
-    panels[0].set_title(f"{mechanism.name}: {legs} along the way (dashed: limits{shaded})", fontsize=11)
-    return figure
-
-
-@checked
-def draw_history(designed: Designed) -> Figure:
-    """Best fitness over designs looked at.
-
-    Raises:
-        MissingExtra: matplotlib is not installed.
-    """
-    figure = _figure((6.0, 3.6))
-    axes = figure.add_subplot()
-    history = designed.history
-    feasible = history[:, 1] >= 0.0
-    axes.plot(*history[feasible].T, color=ROD)
-    axes.set_xlabel("designs looked at")
-    axes.set_ylabel("best fitness")
-    axes.set_title(designed.mechanism.name, fontsize=11)
-    axes.grid(alpha=0.3)
-    return figure
-
-
-@checked
-def save_picture(figure: Figure, path: str | Path) -> Path:
-    """Write a figure to a file; the ending says the format (.png, .svg, .pdf).
-
-    Raises:
-        InvalidSetting: Its ending is none of a picture.
-        CannotWrite: It cannot be written.
-    """
-    _need_figure(figure)
-    path = picture_file(path)
-    figure.savefig(path, dpi=130)
-    return path
-
-
-def _need_figure(figure: object) -> None:
-    """Raise InvalidSetting for what is no figure of matplotlib's; without matplotlib there is none."""
-    need_plots()
-    from matplotlib.figure import Figure
-
-    instance(Figure, figure=figure)
-
-
-def _figure(size: tuple[float, float]) -> Figure:
-    need_plots()
-    from matplotlib.figure import Figure
-
-    return Figure(figsize=size, layout="constrained")
 
 
 def _crossed(workspace: Workspace, scale: float) -> Array:

@@ -12,9 +12,10 @@ from numpy.typing import ArrayLike
 from pin_metaik.stewart.kinematics.inverse import inverse
 from pin_metaik.stewart.kinematics.trajectory import Trajectory, follow
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
-from pin_metaik.stewart.platform.limits import LegLimits, PoseState, ServoLimits
+from pin_metaik.stewart.platform.limits import LegLimits, ServoLimits
 from pin_metaik.stewart.platform.poses import PoseLike, one_pose
 from pin_metaik.stewart.platform.servos import each
+from pin_metaik.stewart.platform.states import PoseState
 from pin_metaik.stewart.show.notes import in_unit, notes
 from pin_metaik.stewart.show.values import pose_values
 from pin_metaik.stewart.synthesis.design import Designed

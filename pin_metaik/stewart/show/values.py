@@ -15,8 +15,8 @@ from pin_metaik.stewart.kinematics.judging import judge_poses
 from pin_metaik.stewart.kinematics.trajectory import Trajectory, follow
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.platform.geometry import Geometry
-from pin_metaik.stewart.platform.limits import PoseState
 from pin_metaik.stewart.platform.poses import PoseLike, as_poses
+from pin_metaik.stewart.platform.states import PoseState
 from pin_metaik.stewart.show.notes import notes
 from pin_metaik.stewart.workspace.singularity import crossings, singularities
 from pin_metaik.stewart.workspace.workspace import Workspace

@@ -13,8 +13,9 @@ from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.mechanism.ranges import Dimensions, Variables
 from pin_metaik.stewart.mechanism.task import DesignTask
 from pin_metaik.stewart.platform.geometry import Geometry, chords, gaps
-from pin_metaik.stewart.platform.limits import LegLimits, Limits, PoseState, excess
+from pin_metaik.stewart.platform.limits import LegLimits, Limits, excess
 from pin_metaik.stewart.platform.servos import turned
+from pin_metaik.stewart.platform.states import PoseState
 from pin_metaik.stewart.workspace.surveying import explored, with_best_length
 from pin_metaik.stewart.workspace.workspace import Workspace
 

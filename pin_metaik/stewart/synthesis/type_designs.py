@@ -112,7 +112,7 @@ def new_servo_mechanism(
         InvalidSetting: No unit of that name, or not 3 to 6 legs.
     """
     geometry = standard_geometry(type, base_radius, platform_radius, legs=legs)
-    _ = _servo_types([type], legs)
+    _need_a_joint_each([type], legs)
     geometry = replace(geometry, servos=tangential_servos(geometry, horn, rod))
     return _begun(geometry, ServoLimits(_short(-TURN), _short(TURN)), name, unit)
 
@@ -139,17 +139,12 @@ def _about(angle: float) -> tuple[float, float]:
     return _short(angle - ASIDE), _short(angle + ASIDE)
 
 
-def _servo_types(types: Iterable[str], legs: int) -> list[str]:
-    """These types of platforms, if each has a base joint for each leg, where its servo stands.
-
-    Raises:
-        UnknownName: One of them has not.
-    """
+def _need_a_joint_each(types: Iterable[str], legs: int) -> None:
+    """Raise UnknownName for a type of platform that has not a base joint for each leg, where its servo could stand."""
     with_one_each = [f"{legs}x{joints}" for joints in range(FEWEST_LEGS, legs + 1)]
     for type in types:
         if type not in with_one_each:
             raise UnknownName(f"type of platform with {legs} servos", type, with_one_each)
-    return list(types)
 
 
 @checked
@@ -190,7 +185,7 @@ def compare_types(
         types = NAMED if servos is None else [type for type in NAMED if type.startswith(f"{MOST_LEGS}x")]
     starts = [standard_geometry(type, *radii, legs=legs) for type in types]
     if servos is not None:
-        _servo_types(types, legs)
+        _need_a_joint_each(types, legs)
         horn, rod = (float(each(servos, name).mean()) for name in ("horn", "rod"))
         starts = [replace(start, servos=tangential_servos(start, horn, rod)) for start in starts]
     first = task.seed if rng is None else rng

@@ -14,7 +14,7 @@ from pin_metaik.stewart.kinematics.golden import golden_section
 from pin_metaik.stewart.kinematics.jacobian import transmission
 from pin_metaik.stewart.kinematics.trajectory import Trajectory, between
 from pin_metaik.stewart.platform.geometry import Geometry
-from pin_metaik.stewart.platform.limits import PoseState
+from pin_metaik.stewart.platform.states import PoseState
 from pin_metaik.stewart.workspace.workspace import Verdict, Workspace
 
 HALVINGS = 50

@@ -14,7 +14,8 @@ from pin_metaik.errors import InvalidGeometry, InvalidSetting
 from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kinematics.conditioning import Dexterity
 from pin_metaik.stewart.platform.geometry import MOST_LEGS, Geometry
-from pin_metaik.stewart.platform.limits import Limits, PoseState
+from pin_metaik.stewart.platform.limits import Limits
+from pin_metaik.stewart.platform.states import PoseState
 from pin_metaik.stewart.workspace.cells import Cells
 
 
