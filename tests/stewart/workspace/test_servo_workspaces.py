@@ -3,15 +3,18 @@
 from dataclasses import replace
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.stewart import (
     EmptyWorkspace,
+    Geometry,
     Grid,
     PoseState,
     ServoLimits,
+    Servos,
     Trajectory,
     conditioning,
     crossings,
@@ -174,3 +177,46 @@ def test_a_way_out_of_reach_is_followed_and_told():
     k = np.flatnonzero(motion.reached)[5:-12]
     slopes = np.gradient(motion.coordinates, way.times, axis=0)
     assert_allclose(motion.rates[k], slopes[k], atol=0.02 * np.abs(motion.rates[k]).max())
+
+
+def random_platform(rng):
+    """A platform of servos with axes anywhere, some of them vertical, rods that reach a pose, that pose and its angles."""
+    base = np.column_stack((rng.uniform(-0.2, 0.2, (6, 2)), rng.uniform(-0.05, 0.05, 6)))
+    moving = np.column_stack((rng.uniform(-0.12, 0.12, (6, 2)), rng.uniform(-0.03, 0.03, 6)))
+    pose = pose_at((*rng.uniform(-0.05, 0.05, 2), rng.uniform(0.08, 0.2)), rng.uniform(-0.5, 0.5, 3))
+    q, horn = rng.uniform(-2.5, 2.5, 6), rng.uniform(0.02, 0.09, 6)
+    axes = rng.standard_normal((6, 3))
+    axes[: rng.integers(4), :2] = 0.0
+    servos = Servos(tuple(horn), 0.1, axes=axes, zeros=rng.standard_normal((6, 3)))
+    u, w, _ = servos.frames.transpose(1, 0, 2)
+    c, s = np.cos(q)[:, None], np.sin(q)[:, None]
+    rods = pose[:3, 3] + moving @ pose[:3, :3].T - base - horn[:, None] * (c * u + s * w)
+    branches = np.sign((rods * (c * w - s * u)).sum(axis=1)).astype(int)
+    servos = replace(servos, rod=tuple(np.linalg.norm(rods, axis=1)), branches=tuple(branches))
+    return Geometry.of_joints(base, moving, servos=servos), pose, q
+
+
+def test_laws_of_servos_hold_whatever_their_axes():
+    rng = np.random.default_rng(5)
+    for _ in range(25):
+        geometry, pose, q = random_platform(rng)
+        assert_allclose(inverse(geometry, pose).coordinates[0], q, atol=1e-6)
+        limits = ServoLimits(max(-np.pi, q.min() - rng.uniform(0, 1)), min(np.pi, q.max() + rng.uniform(0, 1)))
+        poses = np.array([pose, *(pose @ some_poses(1000, (0.0, 0.0, 0.0), (0.02, 0.02, 0.02), 0.2, rng.integers(99)))])
+        links, states = inverse(geometry, poses), judge_poses(geometry, limits, poses)
+        reached = (states >= PoseState.POSITIVE) & (states <= PoseState.SINGULAR)
+        inside = ((links.coordinates >= limits.lowest) & (links.coordinates <= limits.highest)).all(axis=1)
+        assert_array_equal(reached, links.reached & inside)
+        assert reached[0]
+        rods = np.linalg.norm(links.vectors[links.reached], axis=-1)
+        assert_allclose(rods, np.broadcast_to(geometry.servos.rod, rods.shape), atol=1e-12, rtol=0)
+        level = np.tile(pose, (4000, 1, 1))
+        level[1:, :3, 3] += rng.uniform(-0.05, 0.05, (3999, 3))
+        states = judge_poses(geometry, limits, level)
+        places = level[(states >= PoseState.POSITIVE) & (states <= PoseState.SINGULAR), :3, 3]
+        turn = {
+            name: (angle, angle)
+            for name, angle in zip(("roll", "pitch", "yaw"), pin.rpy.matrixToRpy(pose[:3, :3]), strict=True)
+        }
+        box = room(Grid(z=(-1.0, 1.0), **turn), geometry, limits)
+        assert ((places >= box[0] - 1e-12) & (places <= box[1] + 1e-12)).all()
