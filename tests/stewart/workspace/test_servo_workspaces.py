@@ -180,7 +180,7 @@ def test_a_way_out_of_reach_is_followed_and_told():
 
 
 def random_platform(rng):
-    """A platform of servos with axes anywhere, some of them vertical, rods that reach a pose, that pose and its angles."""
+    """A platform of servos with axes anywhere, some vertical, a pose that its rods reach, and the angles there."""
     base = np.column_stack((rng.uniform(-0.2, 0.2, (6, 2)), rng.uniform(-0.05, 0.05, 6)))
     moving = np.column_stack((rng.uniform(-0.12, 0.12, (6, 2)), rng.uniform(-0.03, 0.03, 6)))
     pose = pose_at((*rng.uniform(-0.05, 0.05, 2), rng.uniform(0.08, 0.2)), rng.uniform(-0.5, 0.5, 3))
