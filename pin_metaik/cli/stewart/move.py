@@ -59,7 +59,7 @@ def forward(
     if as_json:
         print(json.dumps({"name": mechanism.name, f"{word}s": q, **report}, allow_nan=False))
     else:
-        what = "legs of" if geometry.servos is None else "servos at"
+        what = f"{geometry.actuation.words.legs} at"
         lines += [("pose", pose_words(mechanism, pose)) for pose in poses]
         show_lines(f"{mechanism.name} with {what} {of_legs(mechanism, q)}", lines)
     raise typer.Exit(0 if good else 1)

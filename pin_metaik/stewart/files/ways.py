@@ -18,10 +18,11 @@ from pin_metaik.stewart.platform.states import PoseState
 
 COLUMNS = ("time", "x", "y", "z", "roll", "pitch", "yaw")
 NEEDED = COLUMNS[:4]
+DEGREE = radians(1.0)
 
 
 @checked
-def read_trajectory(path: str | Path, metres: float = 1.0, radian: float = radians(1.0)) -> Trajectory:
+def read_trajectory(path: str | Path, metres: float = 1.0, radian: float = DEGREE) -> Trajectory:
     """A trajectory from a CSV file with a line of names: time, x, y, z and, where it turns, roll, pitch, yaw.
 
     The times are in s; columns may come in any order. Velocities are differences between neighbouring rows.
@@ -88,7 +89,7 @@ def save_motion(motion: Motion, path: str | Path, metres: float = 1.0) -> Path:
     """
     path = writable(path)
     n = motion.coordinates.shape[1]
-    (what, rate), one = (("d", "v"), metres) if motion.geometry.servos is None else (("a", "w"), radians(1.0))
+    (what, rate), one = motion.geometry.actuation.words.columns, metres if motion.geometry.servos is None else DEGREE
     names = ["time", *(f"{what}{i}" for i in range(1, n + 1)), *(f"{rate}{i}" for i in range(1, n + 1)), "nu", "state"]
     legs: list[Array] = [*(motion.coordinates.T / one), *(motion.rates.T / one)]
     table = np.column_stack([motion.trajectory.times, *legs, motion.nu])

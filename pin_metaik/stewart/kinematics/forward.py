@@ -118,7 +118,7 @@ def as_coordinates(geometry: Geometry, coordinates: ArrayLike) -> Array:
         raise InvalidConfiguration(
             f"{_words(geometry)} have shape ({geometry.n},) or (k, {geometry.n}), got {np.shape(coordinates)}"
         )
-    fine = np.isfinite(q) & (q > 0.0) if geometry.servos is None else np.isfinite(q)
+    fine = geometry.actuation.can_be(q)
     if not fine.all():
         least = "above zero and " if geometry.servos is None else ""
         raise InvalidConfiguration(f"{_words(geometry)} are {least}finite, got {q[~fine][0]}")
@@ -137,4 +137,4 @@ def level(geometry: Geometry, q: Array) -> Array:
 
 
 def _words(geometry: Geometry) -> str:
-    return "leg lengths" if geometry.servos is None else "servo angles"
+    return geometry.actuation.words.coordinates

@@ -67,8 +67,7 @@ def transmission(geometry: Geometry, poses: PoseLike) -> Array:
     Raises:
         InvalidTarget: Not poses.
     """
-    _, B = _equation(geometry, as_poses(poses))
-    shares: Array = np.abs(B) / (1.0 if geometry.servos is None else np.asarray(geometry.servos.horn))
+    shares = links_at(geometry, as_poses(poses)).transmission
     return shares if is_many(poses) else shares[0]
 
 

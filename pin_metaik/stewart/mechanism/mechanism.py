@@ -62,9 +62,10 @@ class Mechanism:
     @property
     def coordinate(self) -> Coordinate:
         """How the coordinates of its legs are shown: lengths in its unit, or angles of servos in degrees."""
+        word = self.geometry.actuation.words.coordinate
         if self.geometry.servos is None:
-            return Coordinate("length", self.unit, self.metres)
-        return Coordinate("angle", "deg", float(ANGLES["deg"].factor))
+            return Coordinate(word, self.unit, self.metres)
+        return Coordinate(word, "deg", float(ANGLES["deg"].factor))
 
     @checked
     def survey(self, *, watch: Watch | None = None) -> Workspace:

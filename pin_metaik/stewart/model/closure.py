@@ -48,7 +48,7 @@ class ClosedModel:
         """Joints of leg i, counted from 0: about x and about y of what carries its link, then its actuator."""
         if not 0 <= i < self.mechanism.geometry.n:
             raise InvalidSetting(f"leg i is 0 to {self.mechanism.geometry.n - 1}, got {i}")
-        actuator = "length" if self.mechanism.geometry.servos is None else "servo"
+        actuator = "length" if self.mechanism.geometry.servos is None else "servo"  # as the URDF has it
         names = (f"leg_{i + 1}_{name}" for name in ("about_x", "about_y", actuator))
         return [self.model.joints[self.model.getJointId(name)] for name in names]
 

@@ -9,12 +9,24 @@ in m or an angle in rad.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.optimize.space import Array
+
+
+class Words(NamedTuple):
+    """What people call the legs of a kind, and what moves them."""
+
+    legs: str
+    coordinate: str
+    coordinates: str
+    extremes: str
+    first_joints: str
+    columns: tuple[str, str]
+    """Of a table over time: coordinates and rates, before the number of the leg."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,8 +38,9 @@ class Links:
         starts: Where the links begin, m (k, n, 3): base joints, or tips of horns.
         vectors: The links from there to the platform joints, m (k, n, 3). Of a rod that cannot reach: the way it would
             have to go, from the tip of the horn at its nearest.
-        pushes: By how much the length of the link would change with q if its end were held, sign reversed (k, n): 1 for
-            a slide, horn times the transmission for a servo, in m/rad.
+        pushes: How fast the actuator moves the platform joint along the link (k, n): 1 for a slide; for a servo, in
+            m/rad, its horn times the transmission, below zero where it pulls. NaN where the leg cannot reach.
+        transmission: How square each link is to what moves it, 0 ... 1 (k, n), likewise; 1 for a slide.
         missing: What a link is too short by, m (k, n); below zero what it is too long by; 0 where it reaches.
     """
 
@@ -35,6 +48,7 @@ class Links:
     starts: Array
     vectors: Array
     pushes: Array
+    transmission: Array
     missing: Array
 
     @property
@@ -56,6 +70,8 @@ class Links:
 class Actuation(Protocol):
     """What moves the legs: between legs from base to platform joint, their links and their coordinates."""
 
+    words: Words
+
     @property
     def upright(self) -> Array:
         """The axes (3,) or (n, 3) that the first joints of links have by default, as ``in_first_joint`` has them."""
@@ -65,6 +81,9 @@ class Actuation(Protocol):
 
     def links(self, b: Array, v: Array) -> Links:
         """Inverse kinematics, from base joints b (n, 3) and vectors v (k, n, 3) to the platform joints."""
+
+    def can_be(self, q: Array) -> NDArray[np.bool_]:
+        """Which of these numbers (k, n) can be coordinates at all."""
 
     def held(self, b: Array, q: Array) -> tuple[Array, Array]:
         """Where links begin (k or 1, n, 3) and how long they are (k, n) while coordinates q (k, n) are held."""
@@ -77,6 +96,8 @@ class Actuation(Protocol):
 class Slides:
     """Legs that change their length: linear actuators between base and platform joints (6-UPS)."""
 
+    words = Words("legs", "length", "leg lengths", "shortest, longest", "base joints", ("d", "v"))
+
     @property
     def upright(self) -> Array:
         """Square to the base."""
@@ -88,7 +109,12 @@ class Slides:
     def links(self, b: Array, v: Array) -> Links:
         """The legs are the links; there is always a length."""
         lengths = np.linalg.norm(v, axis=-1)
-        return Links(lengths, np.broadcast_to(b, v.shape), v, np.ones_like(lengths), np.zeros_like(lengths))
+        ones = np.ones_like(lengths)
+        return Links(lengths, np.broadcast_to(b, v.shape), v, ones, ones, np.zeros_like(lengths))
+
+    def can_be(self, q: Array) -> NDArray[np.bool_]:
+        """Lengths are above zero."""
+        return np.isfinite(q) & (q > 0.0)
 
     def held(self, b: Array, q: Array) -> tuple[Array, Array]:
         """From the base joints, as long as their coordinates say."""

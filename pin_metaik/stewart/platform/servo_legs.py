@@ -15,9 +15,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pin_metaik.optimize.space import Array
-from pin_metaik.stewart.platform.actuation import Links
+from pin_metaik.stewart.platform.actuation import Links, Words
 from pin_metaik.stewart.platform.servos import Servos, each
 
 
@@ -30,6 +31,8 @@ class ServoLegs:
     """
 
     servos: Servos
+
+    words = Words("servos", "angle", "servo angles", "lowest, highest", "horn joints", ("a", "w"))
 
     @property
     def upright(self) -> Array:
@@ -57,8 +60,12 @@ class ServoLegs:
         nearest = np.where(missing < 0.0, -1.0, 1.0)  # towards the joint, or away from it
         cos, sin = np.where(closed, cos, nearest * np.cos(phi)), np.where(closed, sin, nearest * np.sin(phi))
         tips = horn[:, None] * (cos[..., None] * self.servos.frames[:, 0] + sin[..., None] * self.servos.frames[:, 1])
-        pushes = np.where(closed, branch * horn * sine / rod, np.nan)
-        return Links(q, b + tips, v - tips, pushes, missing)
+        transmission = np.where(closed, sine / rod, np.nan)
+        return Links(q, b + tips, v - tips, branch * horn * transmission, transmission, missing)
+
+    def can_be(self, q: Array) -> NDArray[np.bool_]:
+        """Angles are any finite numbers."""
+        return np.isfinite(q)
 
     def held(self, b: Array, q: Array) -> tuple[Array, Array]:
         """From the tips of the horns, as long as the rods."""

@@ -28,7 +28,7 @@ def draw_motion(motion: Motion, mechanism: Mechanism) -> Figure:
     figure = new_figure((7.2, 7.2))
     panels = figure.subplots(3, sharex=True)
     times, limits, (word, unit, one) = motion.trajectory.times, mechanism.limits, mechanism.coordinate
-    legs = "servos" if mechanism.geometry.servos else "legs"
+    legs = mechanism.geometry.actuation.words.legs
     curves = ((motion.coordinates / one, word, unit), (motion.rates / one, "rate", f"{unit}/s"))
     for axes, (values, what, unit) in zip(panels, curves, strict=False):
         for i, column in enumerate(values.T, start=1):

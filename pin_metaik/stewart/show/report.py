@@ -51,8 +51,10 @@ def describe(mechanism: Mechanism) -> Lines:
         lines += _servos(mechanism)
     else:
         lines.append(("legs", of_legs(mechanism, limits.span)))
-    first = "base joints" if geometry.servos is None else "horn joints"
-    for name, angle in ((first, limits.base_angle), ("platform joints", limits.platform_angle)):
+    for name, angle in (
+        (geometry.actuation.words.first_joints, limits.base_angle),
+        ("platform joints", limits.platform_angle),
+    ):
         if angle < pi:
             lines.append((name, f"up to {degrees(angle):.6g} deg"))
     if limits.distance > 0.0:
@@ -115,9 +117,8 @@ def assess(mechanism: Mechanism, workspace: Workspace) -> Lines:
 def at_pose(mechanism: Mechanism, pose: PoseLike) -> Lines:
     """The legs at one pose."""
     found, links = pose_values(mechanism, pose), inverse(mechanism.geometry, pose)
-    what = "leg lengths" if mechanism.geometry.servos is None else "servo angles"
     lines = [
-        (what, of_legs(mechanism, links.coordinates)),
+        (mechanism.geometry.actuation.words.coordinates, of_legs(mechanism, links.coordinates)),
         ("pose is", PoseState[found["state"].upper()].words),
         ("dexterity nu", f"{found['nu']:.6f}"),
     ]
@@ -139,7 +140,7 @@ def at_pose(mechanism: Mechanism, pose: PoseLike) -> Lines:
 def along(mechanism: Mechanism, way: Trajectory) -> Lines:
     """The legs along a trajectory: their ranges and speeds, conditioning, and singular poses on the way."""
     motion = follow(mechanism.geometry, way, mechanism.limits, mechanism.dexterity)
-    q, extremes = motion.coordinates, "lowest, highest" if mechanism.geometry.servos else "shortest, longest"
+    q, extremes = motion.coordinates, mechanism.geometry.actuation.words.extremes
     lines = [
         ("time", f"{way.times[-1] - way.times[0]:.6g} s"),
         (extremes, of_legs(mechanism, (np.nanmin(q), np.nanmax(q)) if np.isfinite(q).any() else np.nan)),

@@ -86,7 +86,7 @@ def way_values(mechanism: Mechanism, way: Trajectory) -> dict[str, Any]:
 
 def _plain_legs(geometry: Geometry, coordinates: Array) -> dict[str, Any]:
     """Coordinates of legs by their name; None where a rod does not reach."""
-    return {"leg_lengths" if geometry.servos is None else "servo_angles": _plain(coordinates)}
+    return {geometry.actuation.words.coordinates.replace(" ", "_"): _plain(coordinates)}
 
 
 def _plain(values: Array) -> Any:
