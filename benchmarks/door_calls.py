@@ -146,6 +146,11 @@ def mechanism() -> stewart.Mechanism:
 
 
 @cache
+def servos() -> stewart.Mechanism:
+    return stewart.load_mechanism("servo_sg90")
+
+
+@cache
 def workspace() -> stewart.Workspace:
     return mechanism().survey()
 
@@ -321,6 +326,8 @@ OWNERS: dict[str, Callable[[], Any]] = {
     "stewart.Fitness": fitness,
     "stewart.LegLimits": lambda: mechanism().limits,
     "stewart.Mechanism": mechanism,
+    "stewart.ServoLimits": lambda: servos().limits,
+    "stewart.Servos": lambda: servos().geometry.servos,
     "stewart.Trajectory": way,
     "stewart.Workspace": workspace,
     "mobile.ExactFitness": mobile.ExactFitness,
@@ -668,7 +675,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "stewart.ClosedModel.configuration": lambda: {"pose": LEVEL},
     "stewart.ClosedModel.pose": lambda: {"q": closed().configuration(LEVEL)},
     "stewart.ClosedModel.residual": lambda: {"q": closed().configuration(LEVEL)},
-    "stewart.ClosedModel.forward": lambda: {"lengths": lengths(), "start": LEVEL},
+    "stewart.ClosedModel.forward": lambda: {"coordinates": lengths(), "start": LEVEL},
     "stewart.ClosedModel.rates": lambda: {"pose": LEVEL},
     "stewart.DesignTask": lambda: {
         "ranges": stewart.Ranges(longest=(0.2, 0.3)),
@@ -707,12 +714,14 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "reference": (0.0, 0.0, 0.0),
         "base": None,
         "platform": None,
+        "servos": servos().geometry.servos,
     },
     "stewart.Geometry.of_joints": lambda: {
         "base": mechanism().geometry.base_joints,
         "platform": mechanism().geometry.platform_joints,
         "legs": mechanism().geometry.legs,
         "reference": (0.0, 0.0, 0.0),
+        "servos": servos().geometry.servos,
     },
     "stewart.Grid": lambda: {
         "counts": (3, 3, 3),
@@ -735,7 +744,25 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "dead_length": 0.05,
         "speed": 0.1,
     },
-    "stewart.LegLimits.sockets": lambda: {"geometry": mechanism().geometry},
+    "stewart.ServoLimits": lambda: {
+        "lowest": -1.0,
+        "highest": 1.0,
+        "base_angle": 1.0,
+        "platform_angle": 1.0,
+        "distance": 0.01,
+        "home": (0.0, 0.0, 0.115),
+        "speed": 5.0,
+    },
+    "stewart.Servos": lambda: {
+        "horn": 0.015,
+        "rod": 0.12,
+        "directions": (),
+        "axes": [(1.0, 0.0, 0.1)] * 6,
+        "zeros": [(0.0, 1.0, 0.0)] * 6,
+        "branches": 1,
+    },
+    "stewart.transmission": lambda: {"geometry": servos().geometry, "poses": LEVEL},
+    "stewart.velocity_equation": lambda: {"geometry": servos().geometry, "poses": LEVEL},
     "stewart.Mechanism": lambda: {
         "name": "m",
         "geometry": mechanism().geometry,
@@ -757,6 +784,9 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "longest": (0.2, 0.3),
         "base": (((0.1, 0.2), 0.0, 0.0),),
         "platform": None,
+        "horn": (0.01, 0.02),
+        "rod": 0.12,
+        "directions": (0.0, (1.0, 2.0)),
     },
     "stewart.Trajectory": lambda: {"times": way().times, "poses": way().poses, "twists": way().twists},
     "stewart.Trajectory.through": lambda: {"times": way().times, "poses": way().poses},
@@ -766,7 +796,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "stewart.Workspace.position_of": lambda: {"index": np.zeros((1, 3), dtype=int)},
     "stewart.Workspace.poses_of": lambda: {"index": np.zeros((1, 4), dtype=int)},
     "stewart.Workspace.poses": lambda: {"which": workspace().reached},
-    "stewart.all_forward": lambda: {"geometry": mechanism().geometry, "lengths": lengths(), "rng": 0},
+    "stewart.all_forward": lambda: {"geometry": mechanism().geometry, "coordinates": lengths(), "rng": 0},
     "stewart.best_length": lambda: {"geometry": mechanism().geometry, "poses": LEVEL, "norm": "two"},
     "stewart.characteristic_length": lambda: {
         "geometry": mechanism().geometry,
@@ -804,12 +834,13 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "limits": mechanism().limits,
         "dexterity": stewart.Dexterity(),
     },
-    "stewart.forward": lambda: {"geometry": mechanism().geometry, "lengths": lengths(), "start": LEVEL},
+    "stewart.forward": lambda: {"geometry": mechanism().geometry, "coordinates": lengths(), "start": LEVEL},
     "stewart.homogenised": lambda: {
         "geometry": mechanism().geometry,
         "poses": LEVEL,
         "dexterity": stewart.Dexterity(),
     },
+    "stewart.inverse": lambda: {"geometry": servos().geometry, "poses": LEVEL, "branches": -1},
     "stewart.jacobian": lambda: {"geometry": mechanism().geometry, "poses": LEVEL},
     "stewart.judge_poses": lambda: {
         "geometry": mechanism().geometry,
@@ -828,6 +859,16 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "platform_radius": 0.1,
         "shortest": 0.25,
         "longest": 0.35,
+        "name": None,
+        "legs": 6,
+        "unit": "mm",
+    },
+    "stewart.new_servo_mechanism": lambda: {
+        "type": "6x3",
+        "base_radius": 0.06,
+        "platform_radius": 0.04,
+        "horn": 0.02,
+        "rod": 0.11,
         "name": None,
         "legs": 6,
         "unit": "mm",

@@ -96,6 +96,65 @@ def speeds() -> Iterator[str]:
     yield f"| all assemblies of a 6x6 | {rate(1 / every)} |"
 
 
+def servos(poses: int = 10_000) -> Iterator[str]:
+    """Rows: platforms of servos, by their makers' numbers, at random poses and on either branch."""
+    yield "| platform | branch | rod error m | FK(IK) - pose | IK a second | FK a second | FK by Pinocchio | ratio |"
+    yield "|---|---|---|---|---|---|---|---|"
+    for name, height in (("servo_sg90", 0.115), ("servo_esp32", 0.133)):
+        mechanism = stewart.load_mechanism(name)
+        rng = np.random.default_rng(0)
+        places = np.array([0.0, 0.0, height]) + rng.uniform(-0.006, 0.006, (2 * poses, 3))
+        turns = rng.uniform(-0.1, 0.1, (2 * poses, 3))
+        T = np.array([stewart.pose_at(place, turn) for place, turn in zip(places, turns, strict=True)])
+        T = T[stewart.transmission(mechanism.geometry, T).min(axis=1) > 0.3][:poses]
+        assert len(T) == poses
+        for branch in (1, -1):
+            yield f"| {name} | {branch:+d} | {servo_row(mechanism, branch, T)} |"
+
+
+def servo_row(mechanism: stewart.Mechanism, branch: int, T: np.ndarray) -> str:
+    """Errors and speeds of a platform of servos at poses T (k, 4, 4)."""
+    geometry = replace(mechanism.geometry, servos=replace(mechanism.geometry.servos, branches=branch))
+    q = stewart.inverse(geometry, T).coordinates
+    tips, rods = geometry.actuation.held(geometry.b, q)
+    error = np.abs(np.linalg.norm(geometry.b + stewart.leg_vectors(geometry, T) - tips, axis=-1) - rods).max()
+    start = T @ stewart.pose_at((0.002, -0.001, 0.001), (0.02, 0.01, -0.02))
+    again = np.abs(stewart.forward(geometry, q, start).poses - T).max()
+    closed = stewart.closed_model(replace(mechanism, geometry=geometry, limits=stewart.ServoLimits(-3.1, 3.1)))
+    inverse = best_time(lambda: stewart.inverse(geometry, T)) / len(T)
+    one = best_time(lambda: [stewart.forward(geometry, q[k], start[k]) for k in range(100)]) / 100
+    loops = best_time(lambda: [closed.forward(q[k], start[k]) for k in range(100)], 3) / 100
+    return f"{error:.1e} | {again:.1e} | {rate(1 / inverse)} | {rate(1 / one)} | {rate(1 / loops)} | {loops / one:.0f}"
+
+
+def servo_workspaces() -> Iterator[str]:
+    """Rows: workspaces of servos and of slides that see the same poses, assemblies, and a design."""
+    mechanism = stewart.load_mechanism("servo_sg90")
+    geometry, grid = mechanism.geometry, Grid((120, 120, 60), (-0.06, 0.06), (-0.06, 0.06), (0.09, 0.13))
+    found = stewart.survey(geometry, mechanism.limits, grid)
+    slides = replace(geometry, servos=None)
+    legs = stewart.LegLimits(0.12 - 0.015, 0.12 + 0.015)
+    by_slides = stewart.survey(slides, legs, grid)
+    yield "| what | |"
+    yield "|---|---|"
+    for label, legged, limits, each in (
+        ("servos", geometry, mechanism.limits, found),
+        ("slides of 105 to 135 mm", slides, legs, by_slides),
+    ):
+        seconds = best_time(lambda legged=legged, limits=limits: stewart.survey(legged, limits, grid))
+        share = f"{int(each.reached.sum()):,} of {each.states.size:,} reached"
+        yield f"| poses of a grid a second, {label} ({share}) | {rate(each.states.size / seconds)} |"
+    pose = stewart.pose_at((0.005, 0, 0.115), (0.05, 0.03, 0.0))
+    q = stewart.inverse(geometry, pose).coordinates[0]
+    every = stewart.all_forward(geometry, q)
+    seconds = best_time(lambda: stewart.all_forward(geometry, q), 3)
+    yield f"| all assemblies ({every}), s | {seconds:.3f} |"
+    began = process_time()
+    designed = stewart.design(mechanism)
+    seconds = process_time() - began
+    yield f"| design of platform, horn and rod, 1,200 designs: {designed.score.fitness:.4f}, s | {seconds:.1f} |"
+
+
 def assemblies(platforms: int = 2000) -> Iterator[str]:
     """What forward kinematics finds for random 6x6 platforms at random poses."""
     rng = np.random.default_rng(1)
@@ -205,7 +264,15 @@ def main() -> None:
         print("\n## All assemblies\n")
         for line in assemblies():
             print(line, flush=True)
-        print("\n## Narrow workspaces\n")
+        print("\n## Servos\n")
+        print(
+            "10,000 random poses within 6 mm and 0.1 rad of the makers' home heights; FK one a call, in the same run.\n"
+        )
+        for section in (servos, servo_workspaces):
+            for line in section():
+                print(line, flush=True)
+            print()
+        print("## Narrow workspaces\n")
         for line in narrow():
             print(line, flush=True)
         print("\n## Designs\n")

@@ -1,7 +1,8 @@
 """General Stewart platforms: analysis and dimensional optimisation, after Inner and Kucuk (TOK 2014).
 
-Lengths are in m and angles in rad everywhere but in files, which say their own units. Poses are those of the point P of
-the platform in the base frame: ``pin.SE3``, (4, 4), or many (k, 4, 4).
+Their legs are linear actuators, or rods moved by servos. Lengths are in m and angles in rad everywhere but in files,
+which say their own units. Poses are those of the point P of the platform in the base frame: ``pin.SE3``, (4, 4), or
+many (k, 4, 4).
 
 from pin_metaik import stewart
 
@@ -11,36 +12,42 @@ mechanism.survey().gdi
 stewart.design(mechanism).mechanism
 """
 
-from pin_metaik.stewart.assemblies import Assemblies, all_forward
-from pin_metaik.stewart.closure import ClosedModel, closed_model
-from pin_metaik.stewart.conditioning import Dexterity, best_length, characteristic_length, conditioning
-from pin_metaik.stewart.design import Designed, design
-from pin_metaik.stewart.fitness import Fitness, Score
-from pin_metaik.stewart.forward import Forward, ForwardStatus, forward
-from pin_metaik.stewart.geometry import Geometry, legs_of
-from pin_metaik.stewart.grid import Grid
-from pin_metaik.stewart.interference import leg_distances
-from pin_metaik.stewart.inverse import leg_lengths, leg_vectors
-from pin_metaik.stewart.jacobian import homogenised, jacobian
-from pin_metaik.stewart.layouts import NAMED, standard_geometry
-from pin_metaik.stewart.library import load_mechanism, mechanism_names
-from pin_metaik.stewart.limits import LegLimits, PoseState
-from pin_metaik.stewart.mechanism import Mechanism
-from pin_metaik.stewart.picture import draw, draw_above, draw_history, draw_into, draw_motion, save_picture
-from pin_metaik.stewart.points import save_points
-from pin_metaik.stewart.poses import pose_at
-from pin_metaik.stewart.progress import progress_bar
-from pin_metaik.stewart.ranges import Ranges
-from pin_metaik.stewart.reading import read_mechanism
-from pin_metaik.stewart.singularity import Crossing, Singularities, crossings, singularities
-from pin_metaik.stewart.surveying import survey
-from pin_metaik.stewart.task import DesignTask
-from pin_metaik.stewart.trajectory import Motion, Trajectory, follow, judge_poses, straight
-from pin_metaik.stewart.type_designs import TypeDesign, compare_types, new_mechanism
-from pin_metaik.stewart.urdf import save_urdf, to_urdf
-from pin_metaik.stewart.ways import read_trajectory, save_motion
-from pin_metaik.stewart.workspace import EmptyWorkspace, Verdict, Workspace
-from pin_metaik.stewart.writing import save_mechanism, to_toml
+from pin_metaik.stewart.files.library import load_mechanism, mechanism_names
+from pin_metaik.stewart.files.points import save_points
+from pin_metaik.stewart.files.reading import read_mechanism
+from pin_metaik.stewart.files.ways import read_trajectory, save_motion
+from pin_metaik.stewart.files.writing import save_mechanism, to_toml
+from pin_metaik.stewart.kinematics.assemblies import Assemblies, all_forward
+from pin_metaik.stewart.kinematics.conditioning import Dexterity, best_length, characteristic_length, conditioning
+from pin_metaik.stewart.kinematics.forward import Forward, ForwardStatus, forward
+from pin_metaik.stewart.kinematics.interference import leg_distances
+from pin_metaik.stewart.kinematics.inverse import inverse, leg_lengths, leg_vectors
+from pin_metaik.stewart.kinematics.jacobian import homogenised, jacobian, transmission, velocity_equation
+from pin_metaik.stewart.kinematics.judging import judge_poses
+from pin_metaik.stewart.kinematics.trajectory import Motion, Trajectory, follow, straight
+from pin_metaik.stewart.mechanism.mechanism import Mechanism
+from pin_metaik.stewart.mechanism.ranges import Ranges
+from pin_metaik.stewart.mechanism.task import DesignTask
+from pin_metaik.stewart.model.closure import ClosedModel, closed_model
+from pin_metaik.stewart.model.urdf import save_urdf, to_urdf
+from pin_metaik.stewart.platform.actuation import Links
+from pin_metaik.stewart.platform.geometry import Geometry, legs_of
+from pin_metaik.stewart.platform.layouts import NAMED, standard_geometry
+from pin_metaik.stewart.platform.limits import LegLimits, ServoLimits
+from pin_metaik.stewart.platform.poses import pose_at
+from pin_metaik.stewart.platform.servos import Servos
+from pin_metaik.stewart.platform.states import PoseState
+from pin_metaik.stewart.show.curves import draw_history, draw_motion
+from pin_metaik.stewart.show.figures import save_picture
+from pin_metaik.stewart.show.picture import draw, draw_above, draw_into
+from pin_metaik.stewart.show.progress import progress_bar
+from pin_metaik.stewart.synthesis.design import Designed, design
+from pin_metaik.stewart.synthesis.fitness import Fitness, Score
+from pin_metaik.stewart.synthesis.type_designs import TypeDesign, compare_types, new_mechanism, new_servo_mechanism
+from pin_metaik.stewart.workspace.grid import Grid
+from pin_metaik.stewart.workspace.singularity import Crossing, Singularities, crossings, singularities
+from pin_metaik.stewart.workspace.surveying import survey
+from pin_metaik.stewart.workspace.workspace import EmptyWorkspace, Verdict, Workspace
 
 __all__ = [
     "NAMED",
@@ -57,11 +64,14 @@ __all__ = [
     "Geometry",
     "Grid",
     "LegLimits",
+    "Links",
     "Mechanism",
     "Motion",
     "PoseState",
     "Ranges",
     "Score",
+    "ServoLimits",
+    "Servos",
     "Singularities",
     "Trajectory",
     "TypeDesign",
@@ -83,6 +93,7 @@ __all__ = [
     "follow",
     "forward",
     "homogenised",
+    "inverse",
     "jacobian",
     "judge_poses",
     "leg_distances",
@@ -92,6 +103,7 @@ __all__ = [
     "load_mechanism",
     "mechanism_names",
     "new_mechanism",
+    "new_servo_mechanism",
     "pose_at",
     "progress_bar",
     "read_mechanism",
@@ -107,4 +119,6 @@ __all__ = [
     "survey",
     "to_toml",
     "to_urdf",
+    "transmission",
+    "velocity_equation",
 ]

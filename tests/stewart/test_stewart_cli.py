@@ -49,7 +49,7 @@ def test_analyse_as_json_is_plain_values():
     assert report["characteristic_length"] != 0.12
 
 
-def test_analyse_as_json_has_the_pose_and_the_way_that_were_asked_for():
+def test_analyse_as_json_has_the_pose_and_the_way_that_were_asked_for():  # N15
     ends = ("--pose", 20, -15, 240, 5, -8, 12, "--to", 0, 0, 230, 0, 0, 0)
     result = run("analyse", "stroke_100", "--cells", 20, *ends, "--seconds", 2, "--json")
     report = json.loads(result.stdout)
@@ -69,7 +69,7 @@ def test_analyse_as_json_has_the_pose_and_the_way_that_were_asked_for():
     assert "along_way" not in plain
 
 
-def test_the_picture_shows_the_pose_that_was_asked_for(tmp_path):
+def test_the_picture_shows_the_pose_that_was_asked_for(tmp_path):  # N15
     pytest.importorskip("matplotlib")
     pictures = []
     for name, pose in (

@@ -27,8 +27,9 @@ from pin_metaik.cli.versions import print_json
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.interrupts import kept
 from pin_metaik.stewart import Verdict
-from pin_metaik.stewart.points import points_file
-from pin_metaik.stewart.report import along, assess, at_pose, describe, pose_values, values, way_values
+from pin_metaik.stewart.files.points import points_file
+from pin_metaik.stewart.show.report import along, assess, at_pose, describe
+from pin_metaik.stewart.show.values import pose_values, values, way_values
 
 
 def analyse(

@@ -15,10 +15,11 @@ from rich.console import Console
 from pin_metaik import stewart
 from pin_metaik.output import writable
 from pin_metaik.stewart import Mechanism
-from pin_metaik.stewart.conditioning import NORMS
-from pin_metaik.stewart.picture import picture_file
-from pin_metaik.stewart.report import Lines, notes
-from pin_metaik.stewart.task import Index
+from pin_metaik.stewart.kinematics.conditioning import NORMS
+from pin_metaik.stewart.mechanism.task import Index
+from pin_metaik.stewart.show.figures import picture_file
+from pin_metaik.stewart.show.notes import notes
+from pin_metaik.stewart.show.report import Lines
 
 File = Annotated[str, typer.Argument(help="A .toml file, or one of: " + ", ".join(stewart.mechanism_names()) + ".")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, in m and rad.")]

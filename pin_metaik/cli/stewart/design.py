@@ -27,7 +27,8 @@ from pin_metaik.cli.stewart.common import (
 from pin_metaik.cli.versions import print_json
 from pin_metaik.interrupts import kept
 from pin_metaik.optimize import ALGORITHMS
-from pin_metaik.stewart.report import assess, describe, outcome, values
+from pin_metaik.stewart.show.report import assess, describe, outcome
+from pin_metaik.stewart.show.values import values
 
 
 def design(

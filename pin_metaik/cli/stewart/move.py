@@ -12,30 +12,36 @@ from pin_metaik import stewart
 from pin_metaik.cli.stewart.common import File, Json, Six, can_write, pose_of, show_lines
 from pin_metaik.cli.versions import print_json
 from pin_metaik.errors import InvalidConfiguration
-from pin_metaik.stewart.report import Lines, along, in_unit, pose_words, way_values
+from pin_metaik.stewart.show.notes import in_unit
+from pin_metaik.stewart.show.report import Lines, along, of_legs, pose_words
+from pin_metaik.stewart.show.values import way_values
 
 
 def forward(
     file: File,
-    lengths: Annotated[list[float], typer.Argument(help="The length of each leg, in the file's unit.")],
+    coordinates: Annotated[
+        list[float],
+        typer.Argument(help="The length of each leg (the file's unit) or angle of each servo (degrees)."),
+    ],
     start: Annotated[
         Six | None, typer.Option(metavar="X Y Z R P Y", help="The pose to start from; default: level over the base.")
     ] = None,
     every: Annotated[bool, typer.Option("--all", help="Every assembly of six legs, not the nearest one.")] = False,
     as_json: Json = False,
 ) -> None:
-    """The pose at which the legs have these lengths, or all such poses.
+    """The pose at which the legs have these lengths or servos these angles, or all such poses.
 
     Exit code 0: found, 1: no pose found, or it is not certain that these are all; 2: makes no sense.
     """
     mechanism = stewart.load_mechanism(file)
     geometry = mechanism.geometry
-    if len(lengths) != geometry.n:
-        raise InvalidConfiguration(f"{mechanism.name} has {geometry.n} legs: give as many lengths, got {len(lengths)}")
-    d = [length * mechanism.metres for length in lengths]
+    word, given = mechanism.coordinate.word, len(coordinates)
+    if given != geometry.n:
+        raise InvalidConfiguration(f"{mechanism.name} has {geometry.n} legs: give as many {word}s, got {given}")
+    q = [coordinate * mechanism.coordinate.one for coordinate in coordinates]
     report: dict[str, Any]
     if every:
-        found = stewart.all_forward(geometry, d)
+        found = stewart.all_forward(geometry, q)
         poses, good = found.poses, found.complete
         lines: Lines = [("assemblies", str(found))]
         report = {
@@ -45,16 +51,17 @@ def forward(
             "bound": found.bound,
         }
     else:
-        near = stewart.forward(geometry, d, None if start is None else pose_of(mechanism, start))
+        near = stewart.forward(geometry, q, None if start is None else pose_of(mechanism, start))
         poses, good = near.poses[near.solved], bool(near.solved.all())
         lines = [("ended", near.status.name.lower().replace("_", " ")), ("steps", str(near.iterations[0]))]
         lines += [("largest error", in_unit(mechanism, near.errors))]
         report = {"poses": poses.tolist(), "status": near.status.name.lower(), "error": float(near.errors[0])}
     if as_json:
-        print_json({"name": mechanism.name, "lengths": d, **report})
+        print_json({"name": mechanism.name, f"{word}s": q, **report})
     else:
+        what = f"{geometry.actuation.words.legs} at"
         lines += [("pose", pose_words(mechanism, pose)) for pose in poses]
-        show_lines(f"{mechanism.name} with legs of {in_unit(mechanism, d)}", lines)
+        show_lines(f"{mechanism.name} with {what} {of_legs(mechanism, q)}", lines)
     raise typer.Exit(0 if good else 1)
 
 

@@ -10,8 +10,8 @@ import typer
 
 from pin_metaik import stewart
 from pin_metaik.cli.stewart.common import File, can_write, show_lines, words
-from pin_metaik.stewart.numbers import LENGTHS
-from pin_metaik.stewart.report import describe
+from pin_metaik.stewart.mechanism.units import LENGTHS
+from pin_metaik.stewart.show.report import describe
 
 
 def show(
@@ -47,6 +47,10 @@ def new(
     lengths: Annotated[
         tuple[float, float], typer.Option(metavar="MIN MAX", help="Of a leg, retracted and extended.")
     ] = (250.0, 350.0),
+    servos: Annotated[
+        tuple[float, float] | None,
+        typer.Option(metavar="HORN ROD", help="Moved by servos instead, with horns and rods of these lengths."),
+    ] = None,
     legs: Annotated[int, typer.Option(min=3, max=6, help="How many legs.")] = 6,
     unit: Annotated[str, typer.Option(help="Unit of length: mm, cm or m.")] = "mm",
     name: Annotated[str | None, typer.Option(help="Its name; default: the type.")] = None,
@@ -55,8 +59,9 @@ def new(
     """Begin a mechanism of a type: a .toml file to edit, analyse and design, in which radii and angles are free."""
     can_write(output)
     length = LENGTHS.get(unit, LENGTHS["m"])  # the mechanism says which units there are
-    dimensions = (length.read(Decimal(str(number))) for number in (base, platform, *lengths))
-    mechanism = stewart.new_mechanism(type, *dimensions, name=name, legs=legs, unit=unit)
+    dimensions = (length.read(Decimal(str(number))) for number in (base, platform, *(servos or lengths)))
+    begin = stewart.new_servo_mechanism if servos else stewart.new_mechanism
+    mechanism = begin(type, *dimensions, name=name, legs=legs, unit=unit)
     if output is None:
         print(stewart.to_toml(mechanism), end="")
     else:

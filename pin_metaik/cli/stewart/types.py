@@ -21,7 +21,8 @@ from pin_metaik.output import writable
 def types(
     file: File,
     names: Annotated[
-        list[str] | None, typer.Argument(metavar="[TYPE]...", help="Default: " + ", ".join(stewart.NAMED) + ".")
+        list[str] | None,
+        typer.Argument(metavar="[TYPE]...", help=f"Default: {', '.join(stewart.NAMED)}; with servos 6x3 to 6x6."),
     ] = None,
     evaluations: Annotated[int | None, typer.Option(min=1, help="Designs to look at in each run.")] = None,
     runs: Annotated[int, typer.Option(min=1, help="Runs for each type, each with a seed of its own.")] = 1,
@@ -39,7 +40,7 @@ def types(
     if output is not None:
         writable(output, folder=True)
     with stewart.progress_bar("designing") as watch:
-        found = stewart.compare_types(mechanism, names or stewart.NAMED, runs, rng=rng, watch=watch)
+        found = stewart.compare_types(mechanism, names or None, runs, rng=rng, watch=watch)
     if output is not None:
         output.mkdir(parents=True, exist_ok=True)
         for one in found:

@@ -27,7 +27,7 @@ from pin_metaik.stewart import (
     load_mechanism,
     survey,
 )
-from pin_metaik.stewart.fitness import Fitness
+from pin_metaik.stewart.synthesis.fitness import Fitness
 
 STROKES = (50, 100, 150, 200, 250)  # mm
 GDI = {50: 0.918, 100: 0.829, 150: 0.821, 200: 0.784, 250: 0.785}

@@ -1,0 +1,1 @@
+"""Files: mechanisms as TOML, trajectories as CSV, workspaces as points."""

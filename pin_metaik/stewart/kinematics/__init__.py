@@ -1,0 +1,1 @@
+"""Between poses and legs, both ways: lengths, rates, dexterity, assemblies, trajectories."""

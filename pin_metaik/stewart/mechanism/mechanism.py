@@ -1,0 +1,73 @@
+"""A mechanism as one keeps it in a file: a platform, its limits, and the settings it is analysed and designed with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from pin_metaik.arguments import checked
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.stewart.kinematics.conditioning import Dexterity
+from pin_metaik.stewart.mechanism.task import DesignTask
+from pin_metaik.stewart.mechanism.units import ANGLES, LENGTHS, Coordinate
+from pin_metaik.stewart.platform.geometry import Geometry
+from pin_metaik.stewart.platform.limits import Limits, fit
+from pin_metaik.stewart.workspace.grid import Grid
+from pin_metaik.stewart.workspace.surveying import Watch, survey
+from pin_metaik.stewart.workspace.workspace import Workspace
+
+
+@checked
+@dataclass(frozen=True)
+class Mechanism:
+    """A named platform with everything that is asked about it.
+
+    Attributes:
+        name: Its name.
+        geometry: Joints and legs.
+        limits: What the legs allow: ``LegLimits`` for slides, ``ServoLimits`` for servos.
+        grid: Where its workspace is looked for.
+        dexterity: How its dexterity is measured.
+        task: How it is designed; None for a mechanism that is only analysed.
+        unit: The unit of length its file is written in: m, cm or mm. Everything here is in m.
+        description: What it is.
+        source: Where it is from.
+
+    Raises:
+        InvalidSetting: No name, or no unit of that name.
+        InvalidGeometry: Limits of another kind of legs.
+    """
+
+    name: str
+    geometry: Geometry
+    limits: Limits
+    grid: Grid = field(default=Grid())
+    dexterity: Dexterity = field(default=Dexterity())
+    task: DesignTask | None = None
+    unit: str = "mm"
+    description: str = ""
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.name, str) or not self.name.strip():
+            raise InvalidSetting(f"a mechanism has a name, got {self.name!r}")
+        if self.unit not in LENGTHS:
+            raise InvalidSetting(f"unit is one of {', '.join(LENGTHS)}, got {self.unit!r}")
+        fit(self.limits, self.geometry)
+
+    @property
+    def metres(self) -> float:
+        """How many m one of its unit of length is."""
+        return float(LENGTHS[self.unit].factor)
+
+    @property
+    def coordinate(self) -> Coordinate:
+        """How the coordinates of its legs are shown: lengths in its unit, or angles of servos in degrees."""
+        word = self.geometry.actuation.words.coordinate
+        if self.geometry.servos is None:
+            return Coordinate(word, self.unit, self.metres)
+        return Coordinate(word, "deg", float(ANGLES["deg"].factor))
+
+    @checked
+    def survey(self, *, watch: Watch | None = None) -> Workspace:
+        """Its workspace, by its own settings; see ``survey``."""
+        return survey(self.geometry, self.limits, self.grid, self.dexterity, watch=watch)

@@ -1,0 +1,1 @@
+"""The mechanism for other programs: URDF, and closed loops in Pinocchio."""

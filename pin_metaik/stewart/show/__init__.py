@@ -1,0 +1,1 @@
+"""What people see: pictures, reports, a progress bar."""

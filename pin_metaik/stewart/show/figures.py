@@ -1,0 +1,73 @@
+"""Figures of matplotlib: whether there can be any, empty ones, and files of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pin_metaik.arguments import checked, instance
+from pin_metaik.errors import InvalidSetting, MissingExtra
+from pin_metaik.output import writable
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FORMATS = (".png", ".svg", ".pdf")
+STEEL, PLATE, ROD = "#4a4f57", "#e07b1a", "#2f6fb0"
+
+
+def need_plots() -> None:
+    """Make sure that pictures can be drawn, before anything is worked out for one.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+    """
+    try:
+        import matplotlib.figure  # noqa: F401  # asked for, not used
+    except ImportError:
+        raise MissingExtra("a picture", "plots") from None
+
+
+@checked
+def picture_file(path: str | Path) -> Path:
+    """The path of a picture that can be written, before anything is worked out for it.
+
+    Raises:
+        MissingExtra: matplotlib is not installed.
+        InvalidSetting: Its ending is none of a picture.
+        CannotWrite: It cannot be written.
+    """
+    need_plots()
+    if Path(path).suffix.lower() not in FORMATS:
+        raise InvalidSetting(f"a picture ends in {', '.join(FORMATS)}, got {str(path)!r}")
+    return writable(path)
+
+
+@checked
+def save_picture(figure: Figure, path: str | Path) -> Path:
+    """Write a figure to a file; the ending says the format (.png, .svg, .pdf).
+
+    Raises:
+        InvalidSetting: Its ending is none of a picture.
+        CannotWrite: It cannot be written.
+    """
+    need_figure(figure)
+    path = picture_file(path)
+    figure.savefig(path, dpi=130)
+    return path
+
+
+def need_figure(figure: object) -> None:
+    """Raise InvalidSetting for what is no figure of matplotlib's; without matplotlib there is none."""
+    need_plots()
+    from matplotlib.figure import Figure
+
+    instance(Figure, figure=figure)
+
+
+def new_figure(size: tuple[float, float]) -> Figure:
+    """An empty figure of a size in inches."""
+    need_plots()
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=size, layout="constrained")

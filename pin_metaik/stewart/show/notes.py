@@ -1,0 +1,41 @@
+"""What a reader of the figures about a mechanism should know before believing them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pin_metaik.stewart.mechanism.mechanism import Mechanism
+from pin_metaik.stewart.platform.geometry import MOST_LEGS
+from pin_metaik.stewart.platform.limits import LegLimits
+from pin_metaik.stewart.workspace.surveying import LEAST
+from pin_metaik.stewart.workspace.workspace import Workspace
+
+
+def in_unit(mechanism: Mechanism, lengths: ArrayLike) -> str:
+    """Lengths given in m, in the mechanism's unit."""
+    return f"{', '.join(f'{value / mechanism.metres:.6g}' for value in np.ravel(lengths))} {mechanism.unit}"
+
+
+def notes(mechanism: Mechanism, workspace: Workspace | None = None) -> list[str]:
+    """What a reader of the figures should know before believing them."""
+    geometry, limits = mechanism.geometry, mechanism.limits
+    said = []
+    if geometry.n < MOST_LEGS:
+        free = MOST_LEGS - geometry.n
+        said.append(
+            f"{geometry.n} legs between universal and spherical joints leave the platform {free} "
+            f"freedom{'s' if free > 1 else ''}: they do not hold it, and dexterity says only how they act on it"
+        )
+    if isinstance(limits, LegLimits) and limits.stroke > limits.shortest and limits.dead_length is None:
+        said.append(
+            f"a stroke of {in_unit(mechanism, limits.stroke)} does not fit into a leg that is "
+            f"{in_unit(mechanism, limits.shortest)} long when retracted, unless it telescopes in several stages"
+        )
+    if workspace is None:
+        return said
+    if not workspace.complete:
+        said.append("interrupted: the figures are about the poses seen until then")
+    if max(workspace.cells.shape[:3]) > 1 and workspace.cells_reached < LEAST:
+        said.append(f"only {workspace.cells_reached} cells carry the figures: they are rough; use a finer grid")
+    return said

@@ -1,0 +1,1 @@
+"""Dimensional synthesis: designs, by a metaheuristic."""
