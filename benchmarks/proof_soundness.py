@@ -11,7 +11,7 @@ whole tolerance, in position and orientation at once.
 * closed: closed forms judge, those of arms that are off their place as well.
 * public: ``solve_ik`` and ``solve_ik_batch`` are asked, and must not answer UNREACHABLE.
 
-With ``--kept`` each part is written to a file when it is done, and not done again while the package is the same: a run
+With ``--kept`` each part is written to a file when it is done, and not done again while the sources are the same: a run
 may be broken off and goes on.
 """
 
@@ -179,15 +179,15 @@ def part(of: str, kind: str, seed: int, count: int) -> tuple[str, str, int, int,
     return of, kind, seed, count, KINDS[kind].work(seed, count)
 
 
-def package() -> str:
-    """A digest of the package's sources: what was counted holds for these."""
-    files = sorted(Path(mik.__file__).parent.rglob("*.py"))
+def sources() -> str:
+    """A digest of the sources, the package's and of what asks it: what was counted holds for these."""
+    files = [*sorted(Path(mik.__file__).parent.rglob("*.py")), Path(__file__), Path(__file__).with_name("feasible.py")]
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:16]
 
 
 def counted(kind: str, count: int, workers: int, seed: int = 0, kept: Path | None = None) -> Counts:
     """Ask a kind of question ``count`` times in parts, less those that a file has the answers of already."""
-    of = package()
+    of = sources()
     parts = [(of, kind, seed + i, min(SHARE, count - i * SHARE)) for i in range(-(-count // SHARE))]
     lines = kept.read_text(encoding="utf-8").splitlines() if kept is not None and kept.exists() else []
     known = {tuple(line[:4]): Counts(*line[4]) for line in map(json.loads, lines)}
