@@ -151,8 +151,16 @@ def feasible(chain: mik.Chain, rng: np.random.Generator, tolerances: tuple[float
     near, aligned = 10.0 ** rng.uniform(*np.log10(tolerances), 2)
     if rng.random() < 0.7:
         pose[:3, :3] = pose[:3, :3] @ pin.exp3(aligned * direction(rng))
-        pose[:3, 3] += near * direction(rng)
+        pose[:3, 3] += near * (outward(chain, pose, rng) if rng.random() < 0.5 else direction(rng))
     return Feasible(x, pose, float(near), float(aligned))
+
+
+def outward(chain: mik.Chain, pose: Floats, rng: np.random.Generator) -> Floats:
+    """The direction (3,) in which a pose is soonest out of reach: its wrist away from what is fixed, or towards it."""
+    reach = chain.reach(0, oriented=True)
+    way = pose[:3, :3] @ reach.end + pose[:3, 3] - reach.anchor
+    length = np.linalg.norm(way)
+    return np.asarray(rng.choice([-1.0, 1.0]) * way / length) if length > 0.0 else direction(rng)
 
 
 def direction(rng: np.random.Generator) -> Floats:

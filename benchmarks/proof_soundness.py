@@ -11,12 +11,14 @@ whole tolerance, in position and orientation at once.
 * closed: closed forms judge, those of arms that are off their place as well.
 * public: ``solve_ik`` and ``solve_ik_batch`` are asked, and must not answer UNREACHABLE.
 
-With ``--kept`` each part is written to a file when it is done, and not done again: a run may be broken off and goes on.
+With ``--kept`` each part is written to a file when it is done, and not done again while the sources are the same: a run
+may be broken off and goes on.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 import math
 import platform
@@ -174,16 +176,23 @@ KINDS = {
 }
 
 
-def part(kind: str, seed: int, count: int) -> tuple[str, int, int, Counts]:
+def part(of: str, kind: str, seed: int, count: int) -> tuple[str, str, int, int, Counts]:
     """One part of many, in a process of its own."""
-    return kind, seed, count, KINDS[kind].work(seed, count)
+    return of, kind, seed, count, KINDS[kind].work(seed, count)
+
+
+def sources() -> str:
+    """A digest of the sources, the package's and of what asks it: what was counted holds for these."""
+    files = [*sorted(Path(mik.__file__).parent.rglob("*.py")), Path(__file__), Path(__file__).with_name("feasible.py")]
+    return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:16]
 
 
 def counted(kind: str, count: int, workers: int, seed: int = 0, kept: Path | None = None) -> Counts:
     """Ask a kind of question ``count`` times in parts, less those that a file has the answers of already."""
-    parts = [(kind, seed + i, min(SHARE, count - i * SHARE)) for i in range(-(-count // SHARE))]
+    of = sources()
+    parts = [(of, kind, seed + i, min(SHARE, count - i * SHARE)) for i in range(-(-count // SHARE))]
     lines = kept.read_text(encoding="utf-8").splitlines() if kept is not None and kept.exists() else []
-    known = {tuple(line[:3]): Counts(*line[3]) for line in map(json.loads, lines)}
+    known = {tuple(line[:4]): Counts(*line[4]) for line in map(json.loads, lines)}
     with ProcessPoolExecutor(workers) as pool:
         for future in as_completed([pool.submit(part, *one) for one in parts if one not in known]):
             *name, counts = future.result()
