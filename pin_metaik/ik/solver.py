@@ -32,7 +32,7 @@ from pin_metaik.randomness import DEFAULT_SEED, Rng, as_generator
 
 Refine: TypeAlias = Callable[[IKProblem, NDArray[np.float64], int], Refinement]
 
-EVALUATIONS = 75_000  # of a search and its boxes, by default
+EVALUATIONS = 250_000  # of a search and its boxes, by default
 ELITE = 8  # points of a seeder's search that are refined
 SEEDER_SHARE = 0.25  # of the budget, for one round of the seeder before its elite is refined
 RESTART_SHARE = 0.8  # of a search, for restarts before the automatic solver turns to a seeder
@@ -60,7 +60,7 @@ class IKSolver:
         select: ``"first"`` solution found, or of all distinct ones that the budget allows to find, the ``"nearest"`` to
             ``q0``, the one of best ``"manipulability"``, or the one that keeps farthest from the ``"limits"``.
         trace: Whether to keep the seeder's convergence.
-        patience: Evaluations after which the automatic search ends although nothing is proved, or a third of the
+        patience: Evaluations after which the automatic search ends although nothing is proved, or a tenth of the
             budget, if that is more; the rest of the budget is for boxes (see ``Proof``). Of 13.7 million targets with a
             solution none needed more than 25,000; 3,000 miss 1 of 2,500,000 random ones, and 2 of 10,000 singular ones.
     """
@@ -183,7 +183,7 @@ class IKSolver:
     def _most(self) -> int | None:
         """Evaluations that a search with boxes by turns may take."""
         total = self.budget.evaluations
-        return None if total is None else max(self.patience, total // 3)
+        return None if total is None else max(self.patience, total // 10)
 
     @cached_property
     def lane(self) -> NDArray[np.float64] | None:
