@@ -46,15 +46,16 @@ RESERVE = 0.05  # of the budget, to settle down at the nearest pose when none is
 class IKSolver:
     """How to search: where starts come from, what refines them, and how much may be spent.
 
-    ``IKSolver()`` is what to use without thinking: damped least squares from ``q0`` and then from random starts, and
-    metaheuristic seeds when half of the budget has not solved it. ``IKSolver(seeder=None, starts=1)`` is the classical
+    ``IKSolver()`` is what to use without thinking: damped least squares from ``q0`` and then from random starts, by
+    turns with boxes that prove that there is nothing to be found, and in the end metaheuristic seeds. Others prove
+    nothing but what the links' span does. ``IKSolver(seeder=None, starts=1)`` is the classical
     Jacobian method, ``IKSolver("gwo", None)`` the pure metaheuristic, ``IKSolver("gwo", "dls")`` the hybrid.
 
     Attributes:
         seeder: ``"auto"``, a metaheuristic's name or object, or ``None``: ``q0`` and random starts only.
         refiner: A refiner's name or object, or ``None``: the seeder's best is the answer.
         budget: Evaluations are forward kinematics, one a configuration (a refiner's step is one, its Jacobian comes
-            with it). A budget in seconds is looked at every few milliseconds, and not reproducible. ``target`` is the
+            with it), and boxes of configurations, which take about as long. A budget in seconds is looked at every few milliseconds, and not reproducible. ``target`` is the
             cost at which a pure metaheuristic stops; by default it stops once the tolerances are met.
         starts: How many starts to refine without a seeder; ``None``: until the budget is spent.
         select: ``"first"`` solution found, or of all distinct ones that the budget allows to find, the ``"nearest"`` to
