@@ -55,8 +55,9 @@ class IKSolver:
         seeder: ``"auto"``, a metaheuristic's name or object, or ``None``: ``q0`` and random starts only.
         refiner: A refiner's name or object, or ``None``: the seeder's best is the answer.
         budget: Evaluations are forward kinematics, one a configuration (a refiner's step is one, its Jacobian comes
-            with it), and boxes of configurations, which take about as long. A budget in seconds is looked at every few milliseconds, and not reproducible. ``target`` is the
-            cost at which a pure metaheuristic stops; by default it stops once the tolerances are met.
+            with it), and boxes of configurations, which take about as long. A budget in seconds is looked at every few
+            milliseconds, and not reproducible. ``target`` is the cost at which a pure metaheuristic stops; by default
+            it stops once the tolerances are met.
         starts: How many starts to refine without a seeder; ``None``: until the budget is spent.
         select: ``"first"`` solution found, or of all distinct ones that the budget allows to find, the ``"nearest"`` to
             ``q0``, the one of best ``"manipulability"``, or the one that keeps farthest from the ``"limits"``.
