@@ -17,7 +17,7 @@ import numpy as np
 
 import pin_metaik as mik
 from pin_metaik.compiled import Floats, Ints
-from pin_metaik.kinematics.kernels import forward, jacobian, pose_error, residual
+from pin_metaik.kinematics.kernel.forward import forward, jacobian, pose_error, residual
 
 ROBOTS = ("panda", "ur5", "rv7fl", "baxter", "kinova", "pr2", "talos", "tiago", "ur10", "xarm7", "z1")
 COUNT, ROUNDS = 4096, 200

@@ -447,6 +447,6 @@ def _remade(
 
 def _kernels() -> ModuleType:
     """The compiled loops, imported late: what compiles them takes 0.4 s to import."""
-    from pin_metaik.kinematics import loops
+    from pin_metaik.kinematics.kernel import entry as loops
 
     return loops

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, allocating, inline, shared
-from pin_metaik.kinematics.branches import Vector, cross, minus, vector
-from pin_metaik.kinematics.kernels import forward
+from pin_metaik.kinematics.kernel.closed_form import Vector, cross, minus, vector
+from pin_metaik.kinematics.kernel.forward import forward
 from pin_metaik.kinematics.proofs.balls import chord, norm
 
 START = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])  # the world, seen from the world

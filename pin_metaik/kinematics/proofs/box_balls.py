@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 
 from pin_metaik.compiled import Floats, inline, shared
-from pin_metaik.kinematics.branches import cross, dot, minus, vector
+from pin_metaik.kinematics.kernel.closed_form import cross, dot, minus, vector
 from pin_metaik.kinematics.proofs.balls import norm
 from pin_metaik.kinematics.proofs.box import BoxArm, Laid, cosine_range
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from pin_metaik.compiled import Floats, inline, shared
-from pin_metaik.kinematics.branches import angle, cross, dot, vector
+from pin_metaik.kinematics.kernel.closed_form import angle, cross, dot, vector
 from pin_metaik.kinematics.proofs.balls import (
     Arc,
     arc_from_to,

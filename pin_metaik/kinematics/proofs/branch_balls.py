@@ -8,8 +8,8 @@ A branch that stays is a small box, all of whose angles are known up to a radius
 from __future__ import annotations
 
 from pin_metaik.compiled import Floats, Ints, inline, jit
-from pin_metaik.kinematics.branches import Numbers, angle, dot, minus, numbers_of, rotated, vector
-from pin_metaik.kinematics.descent import Bounds
+from pin_metaik.kinematics.kernel.closed_form import Numbers, angle, dot, minus, numbers_of, rotated, vector
+from pin_metaik.kinematics.kernel.descent import Bounds
 from pin_metaik.kinematics.proofs.balls import (
     Arc,
     Ball,

@@ -17,8 +17,8 @@ import math
 from typing import TypeAlias
 
 from pin_metaik.compiled import Floats, Ints, inline, jit
-from pin_metaik.kinematics.descent import Bounds
-from pin_metaik.kinematics.kernels import cos_sin, nearest_turn
+from pin_metaik.kinematics.kernel.descent import Bounds
+from pin_metaik.kinematics.kernel.forward import cos_sin, nearest_turn
 
 Vector: TypeAlias = tuple[float, float, float]
 Turn: TypeAlias = tuple[float, float]  # cosine and sine

@@ -17,7 +17,7 @@ from typing import TypeAlias
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, allocating, inline, shared
-from pin_metaik.kinematics.kernels import beyond_ball, copy, forward, jacobian, pose_error, residual
+from pin_metaik.kinematics.kernel.forward import beyond_ball, copy, forward, jacobian, pose_error, residual
 
 PATIENCE = 4  # steps that must bring the squared error below `progress`, or the start is given up
 DAMPING_FLOOR = 1e-9  # what is left of the damping at a solution

@@ -21,8 +21,8 @@ import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, Singles, allocating, inline, jit
 from pin_metaik.kinematics.atlas import LEAF
-from pin_metaik.kinematics.descent import Arm, Bounds, Work, evaluate_pose, solve_symmetric, workspace
-from pin_metaik.kinematics.kernels import PATHS, copy, forward, pose_error
+from pin_metaik.kinematics.kernel.descent import Arm, Bounds, Work, evaluate_pose, solve_symmetric, workspace
+from pin_metaik.kinematics.kernel.forward import PATHS, copy, forward, pose_error
 
 ATLAS = "f4[:,:,::1], f4[:,::1], f4[:,:,::1], f8"
 Atlas: TypeAlias = tuple[Singles, Singles, Singles, float]  # leaves, entries, gains, scale

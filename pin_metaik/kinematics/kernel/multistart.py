@@ -8,8 +8,18 @@ import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, Singles, inline, jit, shared
 from pin_metaik.kinematics.atlas import LEAF
-from pin_metaik.kinematics.descent import Arm, Bounds, Settings, Work, descend_from, evaluate, have_balls, workspace
-from pin_metaik.kinematics.guesses import (
+from pin_metaik.kinematics.kernel.descent import (
+    Arm,
+    Bounds,
+    Settings,
+    Work,
+    descend_from,
+    evaluate,
+    have_balls,
+    workspace,
+)
+from pin_metaik.kinematics.kernel.forward import PATHS, TURN, copy, nearest_turn
+from pin_metaik.kinematics.kernel.warm_starts import (
     ATLAS,
     TRIED,
     Atlas,
@@ -20,7 +30,6 @@ from pin_metaik.kinematics.guesses import (
     suggest,
     target_feature,
 )
-from pin_metaik.kinematics.kernels import PATHS, TURN, copy, nearest_turn
 
 # Evaluations in all, and after which a search ends whose nearest is farther than that: |r|^2.
 Patience: TypeAlias = tuple[int, int, float]

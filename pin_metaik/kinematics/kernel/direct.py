@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 from pin_metaik.compiled import Floats, inline, jit
-from pin_metaik.kinematics.branches import Vector, first_branch, numbers_of
 from pin_metaik.kinematics.closed_form import DESCEND, DONE, SEARCH
-from pin_metaik.kinematics.descent import EXACT, Arm, Bounds
-from pin_metaik.kinematics.desk import NOWHERE, POSE, Desk, Quaternion, desk_for, laid_out, parts_of, read, write_end
-from pin_metaik.kinematics.kernels import forward, pose_error
-from pin_metaik.kinematics.packing import Entries, sizes_of, unpack
+from pin_metaik.kinematics.kernel.closed_form import Vector, first_branch, numbers_of
+from pin_metaik.kinematics.kernel.descent import EXACT, Arm, Bounds
+from pin_metaik.kinematics.kernel.desk import (
+    NOWHERE,
+    POSE,
+    Desk,
+    Quaternion,
+    desk_for,
+    laid_out,
+    parts_of,
+    read,
+    write_end,
+)
+from pin_metaik.kinematics.kernel.forward import forward, pose_error
+from pin_metaik.kinematics.kernel.layout import Entries, sizes_of, unpack
 
 REFUSED = -1  # evaluations of what is no pose, or no configuration to start from
 

@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit
-from pin_metaik.kinematics.branches import Vector, numbers_of
 from pin_metaik.kinematics.closed_form import DESCEND, DONE, SEARCH
-from pin_metaik.kinematics.descent import Work, descend_from, workspace
-from pin_metaik.kinematics.desk import (
+from pin_metaik.kinematics.kernel.closed_form import Vector, numbers_of
+from pin_metaik.kinematics.kernel.descent import Work, descend_from, workspace
+from pin_metaik.kinematics.kernel.desk import (
     NOWHERE,
     POSE,
     Desk,
@@ -22,11 +22,11 @@ from pin_metaik.kinematics.desk import (
     write_end,
     write_world,
 )
-from pin_metaik.kinematics.direct import REFUSED, take_branch
-from pin_metaik.kinematics.guesses import Looks, lookup_space
-from pin_metaik.kinematics.packing import sizes_of, unpack, unpack_atlas
+from pin_metaik.kinematics.kernel.direct import REFUSED, take_branch
+from pin_metaik.kinematics.kernel.layout import sizes_of, unpack, unpack_atlas
+from pin_metaik.kinematics.kernel.multistart import search
+from pin_metaik.kinematics.kernel.warm_starts import Looks, lookup_space
 from pin_metaik.kinematics.reach import ROUNDING
-from pin_metaik.kinematics.searches import search
 
 POSITION = np.array([[0, 0], [0, 1], [0, 2]])  # the rows that count where orientation is free
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline
 from pin_metaik.kinematics.atlas import LEAF
-from pin_metaik.kinematics.descent import Arm, Bounds
-from pin_metaik.kinematics.guesses import Atlas
+from pin_metaik.kinematics.kernel.descent import Arm, Bounds
+from pin_metaik.kinematics.kernel.warm_starts import Atlas
 
 Entries: TypeAlias = tuple[Floats, Floats, Ints]
 

@@ -8,8 +8,8 @@ from typing import TypeAlias
 import numpy as np
 
 from pin_metaik.compiled import Floats, allocating, inline
-from pin_metaik.kinematics.branches import ORIGIN, Numbers, Vector, numbers_of
-from pin_metaik.kinematics.packing import Entries
+from pin_metaik.kinematics.kernel.closed_form import ORIGIN, Numbers, Vector, numbers_of
+from pin_metaik.kinematics.kernel.layout import Entries
 from pin_metaik.kinematics.pose import ORTHONORMAL
 
 Quaternion: TypeAlias = tuple[float, float, float, float]

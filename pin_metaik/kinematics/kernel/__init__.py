@@ -1,0 +1,1 @@
+"""The compiled loops of kinematics: numbers in, numbers out."""
