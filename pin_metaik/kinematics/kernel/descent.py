@@ -12,102 +12,33 @@ What was measured: evaluations a target on random / near-limit / singular target
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, allocating, inline, shared
-from pin_metaik.kinematics.kernel.forward import beyond_ball, copy, forward, jacobian, pose_error, residual
+from pin_metaik.compiled import Floats, Ints, inline, shared
+from pin_metaik.kinematics.kernel.forward import copy
+from pin_metaik.kinematics.kernel.goals import evaluate, evaluate_pose, have_balls
+from pin_metaik.kinematics.kernel.layout import DAMPING, EVALUATIONS, PER_START, PROGRESS, Arm, Bounds
+from pin_metaik.kinematics.kernel.scratch import Scratch
 
 PATIENCE = 4  # steps that must bring the squared error below `progress`, or the start is given up
 DAMPING_FLOOR = 1e-9  # what is left of the damping at a solution
 POLISH, EXACT = 3, 1e-18  # further steps once the tolerance is met, while each gains a decade; until 1e-9 m or rad
 
-Arm: TypeAlias = tuple[Floats, Ints, Ints, Floats]  # joints, wiring, ends, tips
-Bounds: TypeAlias = tuple[Floats, Floats, Ints]  # lower, upper, winds
-Settings: TypeAlias = tuple[float, float, int]  # damping, progress, evaluations from one start
-Work: TypeAlias = tuple[Floats, ...]
 
+class Descent(NamedTuple):
+    """How to descend: damping, share of the squared error that a few steps must undercut, steps from one start."""
 
-@allocating
-def workspace(n: int, rows: Ints | None, S: int) -> Work:
-    """Scratch arrays of a descent: one allocation for all starts."""
-    m = 6 if rows is None else rows.shape[0]
-    axes, origins, pose, error = np.empty((S, 3)), np.empty((S, 3)), np.empty(12), np.empty(6)
-    r6, J6, r, J, H, y = np.empty(6), np.empty((n, 6)), np.empty(m), np.empty((n, m)), np.empty((m, m)), np.empty(m)
-    return axes, origins, pose, error, r6, J6, r, J, H, y, np.empty(n), np.empty(n), np.empty(n)
+    damping: float
+    progress: float
+    steps: int
 
 
 @inline
-def have_balls(tasks: Floats) -> bool:
-    """Whether a tolerance is aimed at as a ball."""
-    found = False
-    for t in range(tasks.shape[0]):
-        found = found or tasks[t, 12] < 0.0 or tasks[t, 15] < 0.0
-    return found
-
-
-@inline
-def evaluate_with(arm: Arm, tasks: Floats, rows: Ints, x: Floats, work: Work, balls: bool) -> tuple[float, bool]:
-    """``evaluate``; ``balls`` is a constant, so that what has none does not pay for them."""
-    joints, wiring, ends, tips = arm
-    axes, origins, pose, error, r6, J6, r, J, _, _, _, _, _ = work
-    m = 0
-    square = 0.0
-    solved = True
-    for t in range(tips.shape[0]):
-        task = tasks[t]
-        forward(joints, wiring, ends[t], ends[t + 1], tips[t], task[:12], x, axes, origins, pose)
-        pose_error(pose, error)
-        position, orientation = residual(task, error, r6)
-        J6[:, :] = 0.0
-        rotated = task[15] > 0.0 or task[16] > 0.0 or task[17] > 0.0 or (balls and task[15] < 0.0)
-        jacobian(joints, wiring, ends[t], ends[t + 1], task, pose, axes, origins, error, rotated, J6)
-        if balls and task[12] < 0.0:
-            position = beyond_ball(task, error, 0, r6, J6)
-        if balls and task[15] < 0.0:
-            orientation = beyond_ball(task, error, 3, r6, J6)
-        solved = solved and position <= task[24] * task[24] and orientation <= task[25] * task[25]
-        while m < rows.shape[0] and rows[m, 0] == t:
-            j = rows[m, 1]
-            r[m] = r6[j]
-            square += r6[j] * r6[j]
-            counts = r6[j] != 0.0 or task[12 + j] == 0.0 or (balls and task[12 + j] < 0.0)
-            for c in range(J6.shape[0]):
-                J[c, m] = J6[c, j] if counts else 0.0
-            m += 1
-    return square, solved
-
-
-@shared
-def evaluate_balls(arm: Arm, tasks: Floats, rows: Ints, x: Floats, work: Work) -> tuple[float, bool]:
-    """``evaluate`` where a tolerance is aimed at as a ball."""
-    return evaluate_with(arm, tasks, rows, x, work, True)
-
-
-@inline
-def evaluate(arm: Arm, tasks: Floats, rows: Ints, x: Floats, work: Work, balls: bool) -> tuple[float, bool]:
-    """Residual r (m,) and Jacobian by coordinate J (n, m) of several tips, or of one with free axes, slack or balls.
-
-    Returns |r|^2 and whether every tip is in tolerance.
-    """
-    return evaluate_balls(arm, tasks, rows, x, work) if balls else evaluate_with(arm, tasks, rows, x, work, False)
-
-
-@inline
-def evaluate_pose(arm: Arm, task: Floats, x: Floats, work: Work) -> tuple[float, bool]:
-    """The same for one tip's whole pose without slack: what almost everybody asks for, at half the time."""
-    joints, wiring, ends, tips = arm
-    axes, origins, pose, error, _, _, r, J, _, _, _, _, _ = work
-    forward(joints, wiring, ends[0], ends[1], tips[0], task[:12], x, axes, origins, pose)
-    pose_error(pose, error)
-    position, orientation = residual(task, error, r)
-    J[:, :] = 0.0
-    jacobian(joints, wiring, ends[0], ends[1], task, pose, axes, origins, error, False, J)
-    square = 0.0
-    for j in range(6):
-        square += r[j] * r[j]
-    return square, position <= task[24] * task[24] and orientation <= task[25] * task[25]
+def descent_of(settings: Floats) -> tuple[Descent, int]:
+    """How to descend, and evaluations in all: the first four settings."""
+    return Descent(settings[DAMPING], settings[PROGRESS], int(settings[PER_START])), int(settings[EVALUATIONS])
 
 
 @inline
@@ -134,24 +65,15 @@ def solve_symmetric(H: Floats, y: Floats, m: int) -> None:
 
 
 @inline
-def step(
-    x: Floats,
-    lower: Floats,
-    upper: Floats,
-    r: Floats,
-    J: Floats,
-    m: int,
-    damping: float,
-    H: Floats,
-    y: Floats,
-    dx: Floats,
-    held: Floats,
-) -> None:
-    """Move x by dx = -J' (J J' + damping I)^-1 r over the joints that their limits leave free.
+def step(bounds: Bounds, m: int, damping: float, work: Scratch) -> None:
+    """Move ``work.x`` by dx = -J' (J J' + damping I)^-1 r over the joints that their limits leave free.
 
     Joints at a limit and pushed outward stay; those that dx would take across a limit go onto it, and the step is
-    solved again for the others.
+    solved again for the others. Of the m rows ``r`` gets what those on their limits leave of it; ``H``, ``y``, ``dx``
+    and ``held`` are written.
     """
+    lower, upper = bounds.lower, bounds.upper
+    x, r, J, H, y, dx, held = work.x, work.r, work.J, work.H, work.y, work.dx, work.held
     n = x.shape[0]
     for c in range(n):
         slope = 0.0
@@ -195,35 +117,34 @@ def step(
 @shared
 def descend_from(
     arm: Arm,
-    tasks: Floats,
+    goals: Floats,
     rows: Ints | None,
     bounds: Bounds,
     start: Floats,
-    settings: Settings,
+    descent: Descent,
     evaluations: int,
     least: float,
     best: Floats,
-    work: Work,
+    work: Scratch,
 ) -> tuple[int, bool, float]:
     """Descend from one start (n,), for no more evaluations than are left; ``rows`` None: to one tip's whole pose.
 
     Returns the evaluations spent, whether the tolerances are met, and the least |r|^2 so far, here or before;
     ``best`` (n,) gets the coordinates that have it.
     """
-    _, _, _, _, _, _, r, J, H, y, x, dx, held = work
-    lower, upper, _ = bounds
-    damping, progress, steps = settings
+    lower, upper, x = bounds.lower, bounds.upper, work.x
+    damping, progress, steps = descent.damping, descent.progress, descent.steps
     for c in range(x.shape[0]):
         x[c] = min(max(start[c], lower[c]), upper[c])
-    balls = have_balls(tasks)
+    balls = have_balls(goals)
     mark = np.inf
     found = False
     polish = POLISH
     for i in range(min(steps, evaluations)):
         if rows is None:
-            square, solved = evaluate_pose(arm, tasks[0], x, work)
+            square, solved = evaluate_pose(arm, goals[0], x, work)
         else:
-            square, solved = evaluate(arm, tasks, rows, x, work, balls)
+            square, solved = evaluate(arm, goals, rows, x, work, balls)
         if found and not (solved and square < 0.01 * least):
             return i + 1, True, least
         if square < least or solved:
@@ -239,5 +160,5 @@ def descend_from(
                 return i + 1, False, least
             mark = square
         m = 6 if rows is None else rows.shape[0]
-        step(x, lower, upper, r, J, m, damping * square + DAMPING_FLOOR, H, y, dx, held)
+        step(bounds, m, damping * square + DAMPING_FLOOR, work)
     return min(steps, evaluations), found, least

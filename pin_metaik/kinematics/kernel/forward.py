@@ -1,33 +1,20 @@
-"""The compiled loops over populations, and what they are made of: forward kinematics, errors and their Jacobian.
+"""Forward kinematics: where joints and tips are, as compiled loops have it.
 
 Compiling a single forward kinematics gains nothing over Pinocchio (0.8 us); compiling whole loops does, because the
 call from Python (1-3 us) is then paid once.
-
-Arrays every kernel takes (made by ``Chain`` and ``IKProblem``; S joints on all paths, T tips, n coordinates):
-
-* ``joints`` (S, 14): placement of the joint frame, turned so that its axis is z, in the joint frame before it (rotation
-  row by row, then translation), then the scale and shift of its coordinate: angle or travel = scale x + shift.
-* ``wiring`` (S, 2): column of x that the joint follows, and 1 if it rotates, 0 if it slides.
-* ``ends`` (T + 1,): joints ``ends[t]:ends[t + 1]`` lead from the world to tip t; paths may share columns.
-* ``tips`` (T, 12): placement of each tip in its last joint frame.
-* ``tasks`` (T, 26): the world in the target frame (12), slack per axis (6), weight per axis (6), tolerances (m, rad).
-  Where the slack of position or of orientation is below 0, it is minus the radius of a ball for the three axes at once.
-* ``rows`` (m, 2): which (tip, axis) pairs count: slack finite.
-
-Seen from the target frame, a solved tip stands at the identity: position error p, orientation error log(R), and no
-target left to subtract. ``x`` is (n,), a population ``X`` is (k, n).
 """
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, Singles, exact, inline, jit, shared
+from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE, SHIFT, chain_in, sizes_in
 
-TURN = 2.0 * np.pi
-PATHS = "f8[:,::1], i8[:,::1], i8[::1], f8[:,::1]"  # joints, wiring, ends, tips
+FULL_TURN = 2.0 * np.pi
+IDENTITY = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+
+sizes_of, unpack = inline(sizes_in), inline(chain_in)
 
 
 @inline
@@ -40,9 +27,9 @@ def copy(source: Floats | Singles, target: Floats) -> None:
 @inline
 def nearest_turn(x: float, x0: float, lower: float, upper: float) -> float:
     """The angle moved by the whole turns that bring it nearest to x0 between the bounds; below them if none does."""
-    turns = np.round((x0 - x) / TURN)
-    turns = min(max(turns, np.ceil((lower - x) / TURN)), np.floor((upper - x) / TURN))
-    return float(x + TURN * turns)
+    turns = np.round((x0 - x) / FULL_TURN)
+    turns = min(max(turns, np.ceil((lower - x) / FULL_TURN)), np.floor((upper - x) / FULL_TURN))
+    return float(x + FULL_TURN * turns)
 
 
 @exact
@@ -94,8 +81,8 @@ def forward(
         uz, vz, i = g * P[0] + h * P[3] + i * P[6], g * P[1] + h * P[4] + i * P[7], g * P[2] + h * P[5] + i * P[8]
         axes[s, 0], axes[s, 1], axes[s, 2] = c, f, i
         origins[s, 0], origins[s, 1], origins[s, 2] = px, py, pz
-        value = P[12] * x[wiring[s, 0]] + P[13]
-        if wiring[s, 1] == 1:
+        value = P[SCALE] * x[wiring[s, COLUMN]] + P[SHIFT]
+        if wiring[s, ROTATES] == 1:
             cos, sin = cos_sin(value)
             a, b = cos * ux + sin * vx, cos * vx - sin * ux
             d, e = cos * uy + sin * vy, cos * vy - sin * uy
@@ -124,145 +111,17 @@ def forward(
     pose[11] = pz + g * P[9] + h * P[10] + i * P[11]
 
 
-@shared
-def pose_error(pose: Floats, error: Floats) -> None:
-    """Translation and rotation vector (6,) of a pose; exact near 0 and, through the symmetric part, near pi."""
-    error[0], error[1], error[2] = pose[9], pose[10], pose[11]
-    wx, wy, wz = 0.5 * (pose[7] - pose[5]), 0.5 * (pose[2] - pose[6]), 0.5 * (pose[3] - pose[1])
-    sin = math.sqrt(wx * wx + wy * wy + wz * wz)
-    cos = 0.5 * (pose[0] + pose[4] + pose[8] - 1.0)
-    angle = math.atan2(sin, cos)
-    if sin > 1e-4 or cos > 0.0:
-        scale = angle / sin if sin > 1e-8 else 1.0
-        error[3], error[4], error[5] = scale * wx, scale * wy, scale * wz
-        return
-    # Near pi: R + R' + (1 - tr R) I = 2 (1 - cos) n n'; take its largest column, signed by the skew part.
-    t = 1.0 - (pose[0] + pose[4] + pose[8])
-    nx, ny, nz = 2.0 * pose[0] + t, pose[1] + pose[3], pose[2] + pose[6]
-    if pose[4] > pose[0] and pose[4] >= pose[8]:
-        nx, ny, nz = pose[1] + pose[3], 2.0 * pose[4] + t, pose[5] + pose[7]
-    elif pose[8] > pose[0]:
-        nx, ny, nz = pose[2] + pose[6], pose[5] + pose[7], 2.0 * pose[8] + t
-    scale = angle / math.sqrt(nx * nx + ny * ny + nz * nz)
-    if nx * wx + ny * wy + nz * wz < 0.0:
-        scale = -scale
-    error[3], error[4], error[5] = scale * nx, scale * ny, scale * nz
-
-
 @inline
-def residual(task: Floats, error: Floats, r: Floats) -> tuple[float, float]:
-    """Weighted error beyond the slack, r (6,); returns the squares of its size in m and in rad, unweighted."""
-    position = orientation = 0.0
-    for j in range(6):
-        slack = task[12 + j]
-        beyond = max(error[j] - slack, 0.0) + min(error[j] + slack, 0.0)
-        if j < 3:
-            position += beyond * beyond
-        else:
-            orientation += beyond * beyond
-        r[j] = task[18 + j] * beyond
-    return position, orientation
+def place_all(block: Floats, X: Floats, out: Floats, axes: Floats, origins: Floats) -> None:
+    """``poses`` in room that was made for it."""
+    joints, wiring, ends, tips = unpack(block).arm
+    for k in range(X.shape[0]):
+        for t in range(tips.shape[0]):
+            forward(joints, wiring, ends[t], ends[t + 1], tips[t], IDENTITY, X[k], axes, origins, out[k, t])
 
 
-@shared
-def beyond_ball(task: Floats, error: Floats, part: int, r: Floats, J: Floats) -> float:
-    """Weighted position (part 0) or orientation (part 3) beyond its ball, into r (6,); returns its size, squared.
-
-    J (n, 6), the Jacobian of the error, becomes that of what is beyond: along the ball it shrinks by as much.
-    """
-    x, y, z = error[part], error[part + 1], error[part + 2]
-    square = x * x + y * y + z * z
-    size = math.sqrt(square)
-    outside = max(size + task[12 + part], 0.0)
-    scale = outside / size if outside > 0.0 else 0.0
-    for j in range(part, part + 3):
-        r[j] = scale * task[18 + j] * error[j]
-    for c in range(J.shape[0]):
-        outward = 0.0
-        if outside > 0.0:
-            outward = (1.0 - scale) * (x * J[c, part] + y * J[c, part + 1] + z * J[c, part + 2]) / square
-        for j in range(part, part + 3):
-            J[c, j] = scale * J[c, j] + outward * error[j]
-    return float(outside * outside)
-
-
-@shared
-def jacobian(
-    joints: Floats,
-    wiring: Ints,
-    first: int,
-    last: int,
-    task: Floats,
-    pose: Floats,
-    axes: Floats,
-    origins: Floats,
-    error: Floats,
-    rotated: bool,
-    J: Floats,
-) -> None:
-    """Add one tip's weighted Jacobian to J (n, 6): row c is d(error)/d(x_c).
-
-    The rotation rows are angular velocity; with ``rotated`` they are d log(R) = Jl^-1(log R) omega instead, which
-    differs far from the target and matters when some axes of rotation are free.
-    """
-    px, py, pz = pose[9], pose[10], pose[11]
-    fx, fy, fz = error[3], error[4], error[5]
-    k = 1.0 / 12.0
-    if rotated:
-        square = fx * fx + fy * fy + fz * fz
-        if square > 1e-6:
-            half = 0.5 * math.sqrt(square)
-            k = (1.0 - half * math.cos(half) / math.sin(half)) / square
-    for s in range(first, last):
-        row = J[wiring[s, 0]]
-        scale = joints[s, 12]
-        zx, zy, zz = scale * axes[s, 0], scale * axes[s, 1], scale * axes[s, 2]
-        if wiring[s, 1] == 1:
-            dx, dy, dz = px - origins[s, 0], py - origins[s, 1], pz - origins[s, 2]
-            row[0] += task[18] * (zy * dz - zz * dy)
-            row[1] += task[19] * (zz * dx - zx * dz)
-            row[2] += task[20] * (zx * dy - zy * dx)
-            if rotated:
-                ux, uy, uz = fy * zz - fz * zy, fz * zx - fx * zz, fx * zy - fy * zx
-                zx += k * (fy * uz - fz * uy) - 0.5 * ux
-                zy += k * (fz * ux - fx * uz) - 0.5 * uy
-                zz += k * (fx * uy - fy * ux) - 0.5 * uz
-            row[3] += task[21] * zx
-            row[4] += task[22] * zy
-            row[5] += task[23] * zz
-        else:
-            row[0] += task[18] * zx
-            row[1] += task[19] * zy
-            row[2] += task[20] * zz
-
-
-@jit(f"void({PATHS}, f8[:,::1], f8[:,:,::1])")
-def poses(joints: Floats, wiring: Ints, ends: Ints, tips: Floats, X: Floats, out: Floats) -> None:
+@jit("void(f8[::1], f8[:,::1], f8[:,:,::1])")
+def poses(block: Floats, X: Floats, out: Floats) -> None:
     """World poses (k, T, 12) of every tip for a population X (k, n)."""
-    S = joints.shape[0]
-    axes, origins = np.empty((S, 3)), np.empty((S, 3))
-    world = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-    for k in range(X.shape[0]):
-        for t in range(tips.shape[0]):
-            forward(joints, wiring, ends[t], ends[t + 1], tips[t], world, X[k], axes, origins, out[k, t])
-
-
-@jit(f"void({PATHS}, f8[:,::1], f8[:,::1], f8[::1])")
-def costs(joints: Floats, wiring: Ints, ends: Ints, tips: Floats, tasks: Floats, X: Floats, out: Floats) -> None:
-    """Cost (k,) of a population X (k, n): weighted distance in m plus weighted angle in rad, summed over the tips."""
-    S = joints.shape[0]
-    axes, origins, pose, error, r = np.empty((S, 3)), np.empty((S, 3)), np.empty(12), np.empty(6), np.empty(6)
-    no_jacobian = np.empty((0, 6))
-    for k in range(X.shape[0]):
-        total = 0.0
-        for t in range(tips.shape[0]):
-            task = tasks[t]
-            forward(joints, wiring, ends[t], ends[t + 1], tips[t], task[:12], X[k], axes, origins, pose)
-            pose_error(pose, error)
-            residual(task, error, r)
-            if task[12] < 0.0:
-                beyond_ball(task, error, 0, r, no_jacobian)
-            if task[15] < 0.0:
-                beyond_ball(task, error, 3, r, no_jacobian)
-            total += math.sqrt(r[0] ** 2 + r[1] ** 2 + r[2] ** 2) + math.sqrt(r[3] ** 2 + r[4] ** 2 + r[5] ** 2)
-        out[k] = total
+    S = sizes_of(block)[0]
+    place_all(block, X, out, np.empty((S, 3)), np.empty((S, 3)))

@@ -1,65 +1,31 @@
-"""The compiled searches: from one start after the other, for one target, for many, or for all solutions of one."""
+"""Multi-start descent: from one start after the other until one arrives, or from all for all solutions."""
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, Singles, inline, jit, shared
-from pin_metaik.kinematics.atlas import LEAF
-from pin_metaik.kinematics.kernel.descent import (
-    Arm,
-    Bounds,
-    Settings,
-    Work,
-    descend_from,
-    evaluate,
-    have_balls,
-    workspace,
-)
-from pin_metaik.kinematics.kernel.forward import PATHS, TURN, copy, nearest_turn
-from pin_metaik.kinematics.kernel.warm_starts import (
-    ATLAS,
-    TRIED,
-    Atlas,
-    Looks,
-    feature_distance,
-    lookup_space,
-    merge_nearest,
-    suggest,
-    target_feature,
-)
-
-# Evaluations in all, and after which a search ends whose nearest is farther than that: |r|^2.
-Patience: TypeAlias = tuple[int, int, float]
+from pin_metaik.compiled import Floats, Ints, inline, jit, shared
+from pin_metaik.kinematics.kernel.descent import Descent, descend_from, descent_of
+from pin_metaik.kinematics.kernel.forward import FULL_TURN, copy, nearest_turn, sizes_of, unpack
+from pin_metaik.kinematics.kernel.layout import Arm, Bounds, Samples
+from pin_metaik.kinematics.kernel.scratch import TRIED, LookupScratch, Scratch, lookup_scratch, scratch_for
+from pin_metaik.kinematics.kernel.warm_starts import feature_distance, samples_of, suggest, target_feature
 
 
-@jit(f"Tuple((f8, b1))({PATHS}, f8[:,::1], i8[:,::1], f8[::1], f8[::1], f8[:,::1])")
-def linearize(
-    joints: Floats,
-    wiring: Ints,
-    ends: Ints,
-    tips: Floats,
-    tasks: Floats,
-    rows: Ints,
-    x: Floats,
-    r: Floats,
-    J: Floats,
-) -> tuple[float, bool]:
-    """Weighted residual r (m,) and Jacobian by coordinate J (n, m) at x; also |r|^2 and whether all is in tolerance."""
-    work = workspace(x.shape[0], rows, joints.shape[0])
-    square, met = evaluate((joints, wiring, ends, tips), tasks, rows, x, work, have_balls(tasks))
-    copy(work[6], r)
-    for c in range(x.shape[0]):
-        copy(work[7][c], J[c])
-    return square, met
+class Patience(NamedTuple):
+    """Evaluations in all, and after which a search ends whose nearest is farther than ``far``, |r|^2."""
+
+    evaluations: int
+    few: int
+    far: float
 
 
 @inline
 def unwind(x: Floats, x0: Floats, bounds: Bounds) -> None:
     """Move each winding angle by the whole turns that bring it nearest to x0 inside its limits."""
-    lower, upper, winds = bounds
+    lower, upper, winds = bounds.lower, bounds.upper, bounds.winds
     for c in range(x.shape[0]):
         if winds[c] == 1:
             x[c] = min(max(nearest_turn(x[c], x0[c], lower[c], upper[c]), lower[c]), upper[c])
@@ -68,36 +34,36 @@ def unwind(x: Floats, x0: Floats, bounds: Bounds) -> None:
 @shared
 def search(
     arm: Arm,
-    tasks: Floats,
+    goals: Floats,
     rows: Ints | None,
     bounds: Bounds,
-    atlas: Atlas,
+    samples: Samples,
     guess: Floats,
     starts: Floats,
-    settings: Settings,
+    descent: Descent,
     patience: Patience,
     best: Floats,
-    work: Work,
-    looks: Looks,
+    work: Scratch,
+    look: LookupScratch,
 ) -> tuple[int, int]:
     """Descend from one start after the other until one meets the tolerances or patience is at its end.
 
-    The starts are somebody's guess (n,), those that the atlas suggests, if there is one, and ``starts`` (s, n). The
-    guess goes first when its pose is nearer to the target than the poses in the atlas, otherwise after them.
+    The starts are somebody's guess (n,), those that the samples suggest, if there are any, and ``starts`` (s, n). The
+    guess goes first when its pose is nearer to the target than the poses of the samples, otherwise after them.
 
     Returns the evaluations spent and the number of the start that met them, or -1; ``best`` (n,) gets the coordinates.
     """
-    tried = TRIED if atlas[0].shape[0] > 0 else 0
-    suggested, goal, weights = looks[0], looks[1], looks[2]
+    tried = TRIED if samples.leaves.shape[0] > 0 else 0
     own = 0
     if tried > 0:
-        target_feature(tasks, atlas[3], goal, weights)
-        nearest = suggest(tasks, rows, bounds, atlas, work, looks)
-        own = 0 if feature_distance(arm, guess, atlas[3], goal, weights, work) <= nearest else tried
-    lower, upper, _ = bounds
+        target_feature(goals, samples.scale, look.feature, look.weights)
+        nearest = suggest(goals, rows, bounds, samples, work, look)
+        mine = feature_distance(arm, guess, samples.scale, look.feature, look.weights, work)
+        own = 0 if mine <= nearest else tried
+    lower, upper = bounds.lower, bounds.upper
     for c in range(best.shape[0]):
         best[c] = min(max(guess[c], lower[c]), upper[c])
-    evaluations, few, far = patience
+    evaluations, few, far = patience.evaluations, patience.few, patience.far
     spent = 0
     least = np.inf
     for k in range(1 + tried + starts.shape[0]):
@@ -106,11 +72,11 @@ def search(
         if k == own:
             start = guess
         elif k <= tried:
-            start = suggested[k - 1 if own == 0 else k]
+            start = look.starts[k - 1 if own == 0 else k]
         else:
             start = starts[k - tried - 1]
         steps, met, least = descend_from(
-            arm, tasks, rows, bounds, start, settings, evaluations - spent, least, best, work
+            arm, goals, rows, bounds, start, descent, evaluations - spent, least, best, work
         )
         spent += steps
         if met:
@@ -119,65 +85,33 @@ def search(
     return spent, -1
 
 
-@jit(f"void(f8[:,::1], {ATLAS}, i8, f8[:,::1])")
-def neighbours(
-    tasks: Floats, leaves: Singles, entries: Singles, gains: Singles, scale: float, count: int, out: Floats
-) -> None:
-    """The ``count`` atlas entries (count, n) nearest to the targets, nearest first."""
-    T = tasks.shape[0]
-    goal, weights, away = np.empty(9 * T, np.float32), np.empty(9 * T, np.float32), np.empty(LEAF, np.float32)
-    target_feature(tasks, scale, goal, weights)
-    order, distances = np.zeros(count, np.int64), np.empty(count, np.float32)
-    distances[:] = np.inf
-    for leaf in range(leaves.shape[0] - 1):
-        merge_nearest(leaves[1 + leaf], leaf, goal, weights, away, order, distances)
-    for k in range(count):
-        copy(entries[order[k]], out[k])
-
-
-BOUNDS = "f8[::1], f8[::1], i8[::1]"  # lower, upper, winds
-PROBLEM = f"{PATHS}, f8[:,::1], i8[:,::1]?, {BOUNDS}"  # ..., tasks, rows, ...
-SETTINGS = "f8, f8, i8, i8"  # damping, progress, evaluations from one start, evaluations
-
-
-@jit(f"UniTuple(i8, 2)({PROBLEM}, {ATLAS}, f8[:,::1], {SETTINGS}, f8[::1])")
-def descend(
-    joints: Floats,
-    wiring: Ints,
-    ends: Ints,
-    tips: Floats,
-    tasks: Floats,
+@inline
+def descend_in(
+    block: Floats,
+    goals: Floats,
     rows: Ints | None,
-    lower: Floats,
-    upper: Floats,
-    winds: Ints,
-    leaves: Singles,
-    entries: Singles,
-    gains: Singles,
-    scale: float,
     starts: Floats,
-    damping: float,
-    progress: float,
-    per_start: int,
-    evaluations: int,
+    settings: Floats,
     best: Floats,
+    work: Scratch,
+    look: LookupScratch,
+) -> tuple[int, int]:
+    """``descend`` in room that was made for it."""
+    arm, bounds, _, _, _ = unpack(block)
+    descent, most = descent_of(settings)
+    patience = Patience(most, most, np.inf)
+    return search(
+        arm, goals, rows, bounds, samples_of(block), starts[0], starts[1:], descent, patience, best, work, look
+    )
+
+
+@jit("UniTuple(i8, 2)(f8[::1], f8[:,::1], i8[:,::1]?, f8[:,::1], f8[::1], f8[::1])")
+def descend(
+    block: Floats, goals: Floats, rows: Ints | None, starts: Floats, settings: Floats, best: Floats
 ) -> tuple[int, int]:
     """``search`` for one problem; the first of the starts (s, n) is the guess."""
-    n = lower.shape[0]
-    return search(
-        (joints, wiring, ends, tips),
-        tasks,
-        rows,
-        (lower, upper, winds),
-        (leaves, entries, gains, scale),
-        starts[0],
-        starts[1:],
-        (damping, progress, per_start),
-        (evaluations, evaluations, np.inf),
-        best,
-        workspace(n, rows, joints.shape[0]),
-        lookup_space(n, tasks.shape[0]),
-    )
+    S, n, T = sizes_of(block)
+    return descend_in(block, goals, rows, starts, settings, best, scratch_for(n, rows, S), lookup_scratch(n, T))
 
 
 @inline
@@ -188,32 +122,69 @@ def is_new(x: Floats, solutions: Floats, count: int, winds: Ints, apart: float) 
         for c in range(x.shape[0]):
             d = x[c] - solutions[s, c]
             if winds[c] == 1:
-                d -= TURN * np.round(d / TURN)
+                d -= FULL_TURN * np.round(d / FULL_TURN)
             same = same and abs(d) <= apart
         if same:
             return False
     return True
 
 
-@jit(f"UniTuple(i8, 3)({PROBLEM}, f8[:,::1], f8, i8, b1, {SETTINGS}, f8[:,::1], i8)")
-def descend_all(
-    joints: Floats,
-    wiring: Ints,
-    ends: Ints,
-    tips: Floats,
-    tasks: Floats,
+@inline
+def collect_in(
+    block: Floats,
+    goals: Floats,
     rows: Ints | None,
-    lower: Floats,
-    upper: Floats,
-    winds: Ints,
     starts: Floats,
+    settings: Floats,
     apart: float,
     patience: int,
     branch: bool,
-    damping: float,
-    progress: float,
-    per_start: int,
-    evaluations: int,
+    solutions: Floats,
+    known: int,
+    work: Scratch,
+    x: Floats,
+    start: Floats,
+) -> tuple[int, int, int]:
+    """``descend_all`` in room that was made for it."""
+    arm, bounds, _, _, _ = unpack(block)
+    descent, evaluations = descent_of(settings)
+    n = x.shape[0]
+    spent, count, vain = 0, known, 0
+    turned = n * known  # half-turn starts already taken: joint turned % n of solution turned // n
+    given = 0
+    while spent < evaluations and count < solutions.shape[0] and vain < patience:
+        if branch and turned < n * count:
+            copy(solutions[turned // n], start)
+            c = turned % n
+            turned += 1
+            start[c] += -np.pi if start[c] + np.pi > bounds.upper[c] else np.pi
+            start[c] = min(max(start[c], bounds.lower[c]), bounds.upper[c])
+        elif given < starts.shape[0]:
+            copy(starts[given], start)
+            given += 1
+        else:
+            break
+        steps, met, _ = descend_from(arm, goals, rows, bounds, start, descent, evaluations - spent, np.inf, x, work)
+        spent += steps
+        if met:
+            vain += 1
+            if is_new(x, solutions, count, bounds.winds, apart):
+                copy(x, solutions[count])
+                count += 1
+                vain = 0
+    return spent, count, vain
+
+
+@jit("UniTuple(i8, 3)(f8[::1], f8[:,::1], i8[:,::1]?, f8[:,::1], f8[::1], f8, i8, b1, f8[:,::1], i8)")
+def descend_all(
+    block: Floats,
+    goals: Floats,
+    rows: Ints | None,
+    starts: Floats,
+    settings: Floats,
+    apart: float,
+    patience: int,
+    branch: bool,
     solutions: Floats,
     known: int,
 ) -> tuple[int, int, int]:
@@ -223,41 +194,6 @@ def descend_all(
     that met the tolerances brought nothing new. With ``branch`` each solution is started from again with one joint
     moved by pi, which is where others often are. Returns evaluations, solutions and the length of the last vain row.
     """
-    n = lower.shape[0]
-    work = workspace(n, rows, joints.shape[0])
-    x, start = np.empty(n), np.empty(n)
-    spent, count, vain = 0, known, 0
-    turned = n * known  # half-turn starts already taken: joint turned % n of solution turned // n
-    given = 0
-    while spent < evaluations and count < solutions.shape[0] and vain < patience:
-        if branch and turned < n * count:
-            copy(solutions[turned // n], start)
-            c = turned % n
-            turned += 1
-            start[c] += -np.pi if start[c] + np.pi > upper[c] else np.pi
-            start[c] = min(max(start[c], lower[c]), upper[c])
-        elif given < starts.shape[0]:
-            copy(starts[given], start)
-            given += 1
-        else:
-            break
-        steps, met, _ = descend_from(
-            (joints, wiring, ends, tips),
-            tasks,
-            rows,
-            (lower, upper, winds),
-            start,
-            (damping, progress, per_start),
-            evaluations - spent,
-            np.inf,
-            x,
-            work,
-        )
-        spent += steps
-        if met:
-            vain += 1
-            if is_new(x, solutions, count, winds, apart):
-                copy(x, solutions[count])
-                count += 1
-                vain = 0
-    return spent, count, vain
+    S, n, _ = sizes_of(block)
+    work, x, start = scratch_for(n, rows, S), np.empty(n), np.empty(n)
+    return collect_in(block, goals, rows, starts, settings, apart, patience, branch, solutions, known, work, x, start)
