@@ -15,7 +15,7 @@ from pin_metaik.arguments import array, checked, shown
 from pin_metaik.errors import FixedFrame, InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.kinematics.atlas import SEED, Atlas, chart, no_samples
 from pin_metaik.kinematics.closed_form import closed_form
-from pin_metaik.kinematics.kernel.layout import LEAF, REACH, Entries, Floats, Ints, Packed, pack
+from pin_metaik.kinematics.kernel.layout import LEAF, REACH, Entries, Floats, Ints, Packed, Samples, pack
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.model import (
     HasModel,
@@ -353,25 +353,19 @@ class Chain:
     @cached_property
     def bare(self) -> Floats:
         """The chain as the compiled loops take it, without samples: one block of numbers; see ``kernel.layout``."""
-        return pack(self._packed(np.zeros(REACH), np.zeros((0, 3))), no_samples(self.n, len(self.frames)))
+        return self._packed(np.zeros(REACH), np.zeros((0, 3)), no_samples(self.n, len(self.frames)))
 
     @cached_property
     def block(self) -> Floats:
-        """The same with the samples of the atlas, and of a chain with one frame what bounds its reach and solves it."""
-        return self._block(oriented=True) if self.has_pose_solver else self._with_samples(np.zeros(REACH))
+        """The same with the samples of the atlas, and what bounds the reach of a chain with one frame and solves it."""
+        reach = self.reach(0, oriented=True).array if self.has_pose_solver else np.zeros(REACH)
+        return self._packed(reach, self.form, self.atlas.samples)
 
-    def _block(self, oriented: bool) -> Floats:
-        """The chain with the bounds on reach for targets with or without a full orientation."""
-        return self._with_samples(self.reach(0, oriented).array)
-
-    def _with_samples(self, reach: Floats) -> Floats:
-        return pack(self._packed(reach, self.form), self.atlas.samples)
-
-    def _packed(self, reach: Floats, form: Floats) -> Packed:
+    def _packed(self, reach: Floats, form: Floats, samples: Samples) -> Floats:
         joints = [self.model.joints[int(j)] for j in self.coordinates.joints]
         places = np.array([(joint.idx_q, joint.nq == 2) for joint in joints], dtype=np.int64)
         entries = Entries(self._least, self._most, places)
-        return Packed(self.paths.arrays, self.limits.arrays, entries, reach, form)
+        return pack(Packed(self.paths.arrays, self.limits.arrays, entries, reach, form), samples)
 
     @cached_property
     def pose_solver(self) -> PoseSolver:
@@ -381,7 +375,8 @@ class Chain:
     @cached_property
     def position_solver(self) -> PoseSolver:
         """The same for positions at any orientation."""
-        return self._solver(self._block(oriented=False), oriented=False)
+        block = self._packed(self.reach(0, oriented=False).array, self.form, self.atlas.samples)
+        return self._solver(block, oriented=False)
 
     def _solver(self, block: Floats, oriented: bool) -> PoseSolver:
         kernels = self.kernels

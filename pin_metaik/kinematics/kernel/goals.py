@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, inline, jit, shared
+from pin_metaik.compiled import Floats, Ints, exact, inline, jit, shared
 from pin_metaik.kinematics.kernel.forward import copy, forward, sizes_of, unpack
 from pin_metaik.kinematics.kernel.layout import (
     ALIGNED,
@@ -217,6 +217,12 @@ def evaluate_pose(arm: Arm, goal: Floats, x: Floats, work: Scratch) -> tuple[flo
     return square, position <= goal[NEAR] * goal[NEAR] and orientation <= goal[ALIGNED] * goal[ALIGNED]
 
 
+@exact
+def added(total: float, a: float, b: float) -> float:
+    """total + a + b, in this order."""
+    return total + a + b
+
+
 @inline
 def cost_all(block: Floats, goals: Floats, X: Floats, out: Floats, work: Scratch, no_jacobian: Floats) -> None:
     """``costs`` in room that was made for it."""
@@ -233,7 +239,8 @@ def cost_all(block: Floats, goals: Floats, X: Floats, out: Floats, work: Scratch
                 beyond_ball(goal, error, 0, r, no_jacobian)
             if goal[TURN_SLACK] < 0.0:
                 beyond_ball(goal, error, TURN, r, no_jacobian)
-            total += math.sqrt(r[0] ** 2 + r[1] ** 2 + r[2] ** 2) + math.sqrt(r[3] ** 2 + r[4] ** 2 + r[5] ** 2)
+            distance = math.sqrt(r[0] ** 2 + r[1] ** 2 + r[2] ** 2)
+            total = added(total, distance, math.sqrt(r[3] ** 2 + r[4] ** 2 + r[5] ** 2))
         out[k] = total
 
 
