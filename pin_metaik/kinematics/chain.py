@@ -358,8 +358,9 @@ class Chain:
     @cached_property
     def block(self) -> Floats:
         """The same with the samples of the atlas, and what bounds the reach of a chain with one frame and solves it."""
+        samples = self.atlas.samples  # first of all: it says so where a joint has no limits
         reach = self.reach(0, oriented=True).array if self.has_pose_solver else np.zeros(REACH)
-        return self._packed(reach, self.form, self.atlas.samples)
+        return self._packed(reach, self.form, samples)
 
     def _packed(self, reach: Floats, form: Floats, samples: Samples) -> Floats:
         joints = [self.model.joints[int(j)] for j in self.coordinates.joints]
@@ -375,7 +376,8 @@ class Chain:
     @cached_property
     def position_solver(self) -> PoseSolver:
         """The same for positions at any orientation."""
-        block = self._packed(self.reach(0, oriented=False).array, self.form, self.atlas.samples)
+        samples = self.atlas.samples
+        block = self._packed(self.reach(0, oriented=False).array, self.form, samples)
         return self._solver(block, oriented=False)
 
     def _solver(self, block: Floats, oriented: bool) -> PoseSolver:
