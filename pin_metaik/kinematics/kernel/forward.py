@@ -14,7 +14,7 @@ from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE, SHIFT, c
 FULL_TURN = 2.0 * np.pi
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
 
-sizes_of, unpack = inline(sizes_in), inline(chain_in)
+sizes_of, unpack = inline(sizes_in), shared(chain_in)
 
 
 @inline

@@ -14,7 +14,7 @@ import numpy as np
 from pin_metaik.compiled import Floats, Ints, allocating, inline, jit
 from pin_metaik.kinematics.kernel.closed_form import ORIGIN, Numbers, Vector, first_branch, numbers_of
 from pin_metaik.kinematics.kernel.descent import EXACT, descend_from, descent_of
-from pin_metaik.kinematics.kernel.forward import forward, sizes_of, unpack
+from pin_metaik.kinematics.kernel.forward import forward, sizes_of
 from pin_metaik.kinematics.kernel.goals import pose_error
 from pin_metaik.kinematics.kernel.layout import (
     ALIGNED,
@@ -45,6 +45,7 @@ from pin_metaik.kinematics.kernel.layout import (
     Bounds,
     Entries,
     PoseScratch,
+    chain_in,
     pose_scratch_in,
     pose_scratch_shapes,
 )
@@ -60,6 +61,7 @@ NOWHERE = ORIGIN, (0.0, 0.0, 0.0, 1.0)
 POSITION = np.array([[0, 0], [0, 1], [0, 2]])  # the rows that count where orientation is free
 
 views, shapes = inline(pose_scratch_in), inline(pose_scratch_shapes)
+unpack = inline(chain_in)  # not the shared one: a closed form would take 3 % longer
 
 
 @allocating
