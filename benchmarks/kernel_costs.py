@@ -17,7 +17,9 @@ import numpy as np
 
 import pin_metaik as mik
 from pin_metaik.compiled import Floats, Ints
-from pin_metaik.kinematics.kernels import forward, jacobian, pose_error, residual
+from pin_metaik.kinematics.kernel.forward import forward
+from pin_metaik.kinematics.kernel.goals import jacobian, pose_error, residual
+from pin_metaik.kinematics.kernel.layout import POSE
 
 ROBOTS = ("panda", "ur5", "rv7fl", "baxter", "kinova", "pr2", "talos", "tiago", "ur10", "xarm7", "z1")
 COUNT, ROUNDS = 4096, 200
@@ -32,17 +34,17 @@ def loop(with_jacobian: bool) -> Callable[..., None]:
 
     @numba.njit(fastmath={"contract", "reassoc", "nsz", "arcp"}, error_model="numpy")
     def run(
-        joints: Floats, wiring: Ints, ends: Ints, tips: Floats, tasks: Floats, X: Floats, out: Floats, J: Floats,
+        joints: Floats, wiring: Ints, ends: Ints, tips: Floats, goals: Floats, X: Floats, out: Floats, J: Floats,
         axes: Floats, origins: Floats, pose: Floats, error: Floats, r: Floats,
     ) -> None:  # fmt: skip
-        S, task = joints.shape[0], tasks[0]
+        S, goal = joints.shape[0], goals[0]
         for k in range(X.shape[0]):
-            forward(joints, wiring, 0, S, tips[0], task[:12], X[k], axes, origins, pose)
+            forward(joints, wiring, 0, S, tips[0], goal[:POSE], X[k], axes, origins, pose)
             pose_error(pose, error)
-            residual(task, error, r)
+            residual(goal, error, r)
             if with_jacobian:
                 J[:, :] = 0.0
-                jacobian(joints, wiring, 0, S, task, pose, axes, origins, error, False, J)
+                jacobian(joints, wiring, 0, S, goal, pose, axes, origins, error, False, J)
             out[k] = np.sqrt(r[0] ** 2 + r[1] ** 2 + r[2] ** 2) + np.sqrt(r[3] ** 2 + r[4] ** 2 + r[5] ** 2)
 
     return run

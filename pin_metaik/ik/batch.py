@@ -23,7 +23,8 @@ from pin_metaik.ik.solve import solve_ik
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
 from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import Target, TargetLike
-from pin_metaik.kinematics import LANE, Chain
+from pin_metaik.kinematics import RESTARTS, Chain
+from pin_metaik.kinematics.kernel.layout import ANGLE, DISTANCE, WITHOUT_BRANCH
 from pin_metaik.optimize.settings import whole
 from pin_metaik.randomness import Rng, as_seed
 
@@ -148,21 +149,23 @@ def solve_ik_batch(
         if result.contacts:
             batch.contacts[i] = result.contacts
 
-    settings = solver.lane if array is not None and chain.has_lane else None
+    settings = solver.kernel_settings if array is not None and chain.has_pose_solver else None
     workers = min(workers or os.cpu_count() or 1, max(k, 1))
     left: Iterable[int] = range(k)
     if array is not None and settings is not None and k:
-        poses, starts = _as_poses(array), drawn(chain, seed, 0, LANE)
-        aligned = math.inf if array.ndim == 2 else settings[5]
-        settings = np.array([*settings[:5], aligned, 0.0, *settings[7:]])  # without a branch ``alone`` decides
+        poses, starts = _as_poses(array), drawn(chain, seed, 0, RESTARTS)
+        settings = settings.copy()
+        settings[WITHOUT_BRANCH] = 0.0  # then ``alone`` decides
+        if array.ndim == 2:
+            settings[ANGLE] = math.inf
 
         def together(part: Rows) -> None:
             q, evaluations, goals = batch.q[part], batch.evaluations[part], poses[part]
             here = chain.at(q[0])
-            lane = here.pose_lane if array.ndim == 3 else here.position_lane
-            chain.kernels.solve_poses(lane.block, lane.rows, starts, settings, goals, q, evaluations)
+            kernel = here.pose_solver if array.ndim == 3 else here.position_solver
+            chain.kernels.solve_poses(kernel.block, kernel.rows, starts, settings, goals, q, evaluations)
             batch.q[part], batch.evaluations[part] = q, evaluations
-            _judge(batch, goals, settings[4:6], part)
+            _judge(batch, goals, settings[DISTANCE : ANGLE + 1], part)
 
         share_out(together, _parts(chain, bases, workers), workers)
         left = np.flatnonzero(~batch.success).tolist()

@@ -1,4 +1,4 @@
-"""The fast lane of the default solver: a pose or a position for one frame, through one compiled call.
+"""The quick way of the default solver: a pose or a position for one frame, through one compiled call.
 
 ``solve_ik`` and ``solve_ik_batch`` both take it. It is the first step of ``IKSolver()``; what that does not solve goes
 on the long way, through targets, problems and ledgers, which cost several times as much Python.
@@ -24,11 +24,11 @@ from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solver import IKSolver
 from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import DEFAULT_TOLERANCE, Target
-from pin_metaik.kinematics import LANE, Chain
-from pin_metaik.kinematics.closed_form import DESCEND, DONE, SEARCH
+from pin_metaik.kinematics import RESTARTS, Chain
+from pin_metaik.kinematics.kernel.layout import ANGLE, DESCEND, DISTANCE, DONE, EVALUATIONS, SEARCH
 
 SOLVED, UNREACHABLE = IKStatus.SOLVED, IKStatus.UNREACHABLE
-SETTLE = np.array([STIFF, SETTLED, 100.0])  # how to come near to what is out of reach; see ``DLS.settle``
+SETTLE = np.array([STIFF, SETTLED, 100.0, 100.0])  # how to come near to what is out of reach; see ``DLS.settle``
 NO_STARTS = np.empty((0, 0))
 AT_MIDDLE = 300.0  # evaluations, at most, for the middle of tolerances that are loose
 
@@ -36,14 +36,14 @@ AT_MIDDLE = 300.0  # evaluations, at most, for the middle of tolerances that are
 def solve_fast(
     chain: Chain, target: object, q0: ArrayLike | None, solver: IKSolver, seed: int | None
 ) -> IKResult | Refinement | None:
-    """The result; where the first starts do not decide, what they came to; None for what the lane cannot take.
+    """The result; where the first starts do not decide, what they came to; None for what the pose solver cannot take.
 
     Starts of a seed are drawn for the few targets that the closed form, q0 and the atlas leave: to draw them takes
     longer than to solve most. With them it begins again, and ends as if they had been there from the beginning.
     """
     began = perf_counter()
-    settings = solver.lane
-    if settings is None or not chain.has_lane:
+    settings = solver.kernel_settings
+    if settings is None or not chain.has_pose_solver:
         return None
     near = aligned = DEFAULT_TOLERANCE
     asked: Target | NDArray[np.float64] | None = None
@@ -66,26 +66,27 @@ def solve_fast(
         else:
             return None
     if asked is not None:
-        settings = np.array([*settings[:4], near, aligned, *settings[6:]])
+        settings = settings.copy()
+        settings[DISTANCE], settings[ANGLE] = near, aligned
         if near > DEFAULT_TOLERANCE or DEFAULT_TOLERANCE < aligned < math.inf:
-            settings[3] = min(settings[3], AT_MIDDLE)
+            settings[EVALUATIONS] = min(settings[EVALUATIONS], AT_MIDDLE)
     oriented = aligned < math.inf
-    lane = chain.pose_lane if oriented else chain.position_lane
+    kernel = chain.pose_solver if oriented else chain.position_solver
     given = chain.reference if q0 is None else q0
-    starts = lane.starts if seed is None else NO_STARTS
+    starts = kernel.starts if seed is None else NO_STARTS
     while True:
         try:
             q = given.copy() if isinstance(given, np.ndarray) else np.array(given, dtype=float)
             todo, spent, proof = DESCEND, 1, None
-            if lane.solve_directly is not None:
-                todo, position, quaternion = lane.solve_directly(lane.block, matrix, q)
+            if kernel.solve_directly is not None:
+                todo, position, quaternion = kernel.solve_directly(kernel.block, matrix, q)
                 if todo == SEARCH:
                     proof = refuted(chain, matrix, near, aligned, q)
             if todo != DONE and proof is None:
-                spent, position, quaternion = lane.solve_pose(lane.block, lane.rows, starts, settings, matrix, q)
+                spent, position, quaternion = kernel.solve_pose(kernel.block, kernel.rows, starts, settings, matrix, q)
                 proof = Proof.REACH if spent == 0 else None
             if proof is not None:
-                spent += chain.kernels.settle_pose(lane.block, lane.rows, SETTLE, matrix, q)
+                spent += chain.kernels.settle_pose(kernel.block, kernel.rows, SETTLE, matrix, q)
         except (TypeError, ValueError, OverflowError):  # whatever it is, the long way takes it or says what is wrong
             return None
         if spent < 0:
@@ -102,7 +103,7 @@ def solve_fast(
             return IKResult(q, status, distance, angle, spent, took, chain, asked, None, None, (), proof, None, parts)
         if starts is not NO_STARTS:  # all has been tried
             return Refinement(chain.x(q), False, spent)
-        starts = drawn(chain, seed, 0, LANE)
+        starts = drawn(chain, seed, 0, RESTARTS)
 
 
 def refuted(
@@ -119,7 +120,7 @@ def refuted(
     nearest = branches.nearest()
     if nearest is not None:
         chain.coordinates.write(nearest, q)
-    far = chain.kernels.is_out_of_reach(chain.pose_lane.block, near, aligned, pose)
+    far = chain.kernels.is_out_of_reach(chain.pose_solver.block, near, aligned, pose)
     return Proof.REACH if far else Proof.CLOSED_FORM
 
 

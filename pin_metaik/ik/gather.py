@@ -29,20 +29,15 @@ def gather(
     Returns evaluations, rows taken, and how many starts in a row led to nothing new at the end.
     """
     chain = problem.chain
-    result: tuple[int, int, int] = chain.kernels.descend_all(
-        *chain.paths.arrays,
+    return chain.kernels.descend_all(
+        chain.bare,
         problem.tasks,
         problem.descended,
-        *chain.limits.arrays,
         np.ascontiguousarray(starts),
+        np.array([SETTINGS.damping, PROGRESS, SETTINGS.iterations, evaluations]),
         apart,
         patience,
         branch,
-        SETTINGS.damping,
-        PROGRESS,
-        SETTINGS.iterations,
-        evaluations,
         found,
         known,
     )
-    return result

@@ -18,6 +18,7 @@ from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSettin
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import Chain, Limits
+from pin_metaik.kinematics.kernel.layout import ALIGNED, NEAR, SLACK, TURN_WEIGHT, WEIGHT
 from pin_metaik.kinematics.proofs.boxes import TINY, Boxes
 from pin_metaik.kinematics.proofs.closed_forms import Branches
 from pin_metaik.optimize import Box
@@ -123,13 +124,13 @@ class IKProblem:
     @cached_property
     def descended(self) -> NDArray[np.int64] | None:
         """The rows as a descent takes them: None for one frame's whole pose without slack, which it is made for."""
-        whole = len(self.targets) == 1 and not self.tasks[0, 12:18].any()
+        whole = len(self.targets) == 1 and not self.tasks[0, SLACK:WEIGHT].any()
         return None if whole else self.rows
 
     @cached_property
     def good_enough(self) -> float:
         """A cost that is certainly within every tolerance."""
-        return float(np.min(self.tasks[:, [18, 21]] * self.tasks[:, [24, 25]]))
+        return float(np.min(self.tasks[:, [WEIGHT, TURN_WEIGHT]] * self.tasks[:, [NEAR, ALIGNED]]))
 
     @cached_property
     def gap(self) -> float:
@@ -155,7 +156,7 @@ class IKProblem:
         """Weighted residual r (m,) and its Jacobian by coordinate J (n, m) at x (n,)."""
         x = array("x", x, self.chain.n)
         r, J = np.empty(len(self.rows)), np.empty((self.chain.n, len(self.rows)))
-        self.chain.kernels.linearize(*self.chain.paths.arrays, self.tasks, self.rows, x, r, J)
+        self.chain.kernels.linearize(self.chain.bare, self.tasks, self.rows, x, r, J)
         return r, J
 
     def branches(self, x0: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -216,7 +217,7 @@ class IKProblem:
         few("count", count, 0)
         count = int(count)
         out = np.empty((count, self.chain.n))
-        self.chain.kernels.neighbours(self.tasks, *self.chain.atlas.arrays, count, out)
+        self.chain.kernels.nearest_samples(self.chain.block, self.tasks, out)
         return out
 
     def costs(self, X: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -226,7 +227,7 @@ class IKProblem:
         """
         X = array("X", X, "k", self.chain.n, finite=False)
         out = np.empty(len(X))
-        self.chain.kernels.costs(*self.chain.paths.arrays, self.tasks, X, out)
+        self.chain.kernels.costs(self.chain.bare, self.tasks, X, out)
         return out
 
     def verdict(self, q: NDArray[np.float64]) -> Verdict:

@@ -104,7 +104,7 @@ class IKSolver:
     ) -> IKResult:
         """Search until the targets are met or the budget is spent; see ``solve_ik`` for the arguments.
 
-        ``first`` is what the fast lane came to, if it has tried the first starts already.
+        ``first`` is what the pose solver came to, if it has tried the first starts already.
         """
         began = perf_counter()
         instance(IKProblem, problem=problem)
@@ -188,8 +188,8 @@ class IKSolver:
         return None if total is None else max(self.patience, total // 10)
 
     @cached_property
-    def lane(self) -> NDArray[np.float64] | None:
-        """Settings of the fast lane, with the default tolerances, if it can take this solver's first step.
+    def kernel_settings(self) -> NDArray[np.float64] | None:
+        """Settings (9,) of the pose solver, with the default tolerances, if it can take this solver's first step.
 
         That is the automatic solver's: it restarts its refiner until a share of the budget is spent.
         """

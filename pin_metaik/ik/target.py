@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, instance, shown
 from pin_metaik.errors import InvalidTarget
+from pin_metaik.kinematics.kernel.layout import ALIGNED, NEAR, SLACK, TURN_SLACK
 from pin_metaik.kinematics.pose import as_pose, as_position
 
 Tolerance: TypeAlias = float | tuple[float, float, float]
@@ -74,7 +75,7 @@ class Target:
             raise InvalidTarget("this target frees every axis: nothing is left to reach")
         weight = _weight("position_weight", self.position_weight)
         turn = _weight("orientation_weight", self.orientation_weight)
-        # The world in the target frame, slack and weight of each axis, radii.
+        # A goal of ``kernel.layout``: the world in the target frame, slack and weight of each axis, radii.
         world = (a, d, g, b, e, h, c, f, i, -a * x - d * y - g * z, -b * x - e * y - h * z, -c * x - f * y - i * z)
         weights = (weight, weight, weight, turn, turn, turn)
         object.__setattr__(self, "task", np.array(world + slack + lean + weights + (near, aligned)))
@@ -126,9 +127,10 @@ class Target:
     def whole_task(self) -> NDArray[np.float64]:
         """(26,) as the kernels take it, aimed at all that is accepted: up to its tolerances an error counts nothing."""
         task = self.task.copy()
-        for at, tolerance in enumerate((self.position_tolerance, self.orientation_tolerance)):
+        parts = (SLACK, NEAR, self.position_tolerance), (TURN_SLACK, ALIGNED, self.orientation_tolerance)
+        for slacks, allowed, tolerance in parts:
             slack, radius = _whole(tolerance)
-            task[12 + 3 * at : 15 + 3 * at], task[24 + at] = slack, radius
+            task[slacks : slacks + 3], task[allowed] = slack, radius
         return task
 
     @property

@@ -1,21 +1,21 @@
 """A table of sampled configurations, looked up by pose: where a descent starts.
 
 From the best of the entries with the nearest poses a descent needs 7 evaluations where a random start needs 22 (see
-``descent`` and ``guesses``). The entries are kept in leaves of a balanced k-d tree; a look-up compares the target with
-the means of all leaves, then with the entries of the nearest few, which takes 1 us instead of the 5 us of comparing it
-with all.
+``kernel.descent`` and ``kernel.warm_starts``). The entries are kept in leaves of a balanced k-d tree; a look-up
+compares the target with the means of all leaves, then with the entries of the nearest few, which takes 1 us instead of
+the 5 us of comparing it with all.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-LEAF = 64  # entries a leaf, and leaves an atlas
+from pin_metaik.kinematics.kernel.layout import LEAF, Samples
+
 SEED = 20_241_122
 TURN = 0.6  # what a whole turn of an axis counts, in root-mean-square distances of the tip from its mean
 
@@ -51,16 +51,15 @@ class Atlas:
         return replace(self, leaves=leaves)
 
     @property
-    def arrays(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32], float]:
-        """The arrays in the order in which the descent takes them."""
-        return self.leaves, self.x, self.gains, self.scale
+    def samples(self) -> Samples:
+        """The same, as the compiled loops take it."""
+        return Samples(self.leaves, self.x, self.gains, self.scale)
 
 
-@cache
-def no_atlas(n: int, tips: int) -> Atlas:
-    """An atlas without entries, for descents from given starts only."""
+def no_samples(n: int, tips: int) -> Samples:
+    """A table without entries, for descents from given starts only."""
     none = np.zeros(0, np.float32)
-    return Atlas(none.reshape(0, 9 * tips, LEAF), none.reshape(0, n), none.reshape(0, n, 6), 1.0)
+    return Samples(none.reshape(0, 9 * tips, LEAF), none.reshape(0, n), none.reshape(0, n, 6), 1.0)
 
 
 def chart(

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property, lru_cache
 from threading import Lock
-from types import ModuleType
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 import pinocchio as pin
@@ -14,8 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, checked, shown
 from pin_metaik.errors import FixedFrame, InvalidConfiguration, InvalidSetting, InvalidTarget
-from pin_metaik.kinematics.atlas import LEAF, SEED, Atlas, chart
+from pin_metaik.kinematics.atlas import SEED, Atlas, chart, no_samples
 from pin_metaik.kinematics.closed_form import NOMINAL, closed_form
+from pin_metaik.kinematics.kernel.layout import LEAF, REACH, Entries, Floats, Ints, Packed, Samples, pack
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.model import (
     HasModel,
@@ -41,27 +41,33 @@ from pin_metaik.optimize.settings import few
 from pin_metaik.randomness import DEFAULT_SEED, as_generator
 from pin_metaik.robots.pickling import reduce_model
 
-LANE = 256  # random starts of the fast lane
+if TYPE_CHECKING:
+    from pin_metaik.kinematics.kernel.entry import Kernels
+
+RESTARTS = 256  # random starts of the pose solver
 REMEMBERED = 16  # sets of samples kept, and chains whose held joints are elsewhere
 REMADE = 16  # chains kept that came out of pickles
 
 
-class Lane(NamedTuple):
-    """The fast lane of a chain: compiled loops, and what they need of it.
+Solved: TypeAlias = tuple[int, tuple[float, float, float], tuple[float, float, float, float]]
+
+
+class PoseSolver(NamedTuple):
+    """The compiled pose solver of a chain: its loops, and what they take of the chain; see ``kernel.pose_solver``.
 
     Attributes:
         block: The chain as ``pack`` has it.
-        rows: ``POSITION``, or None for whole poses.
-        starts: (LANE, n) drawn with the default seed.
-        solve_directly: Of ``direct``; None without a closed form.
-        solve_pose: Of ``lane``.
+        rows: (3, 2) those of a position alone; None for whole poses.
+        starts: (RESTARTS, n) drawn with the default seed.
+        solve_directly: By closed form only; None without one.
+        solve_pose: By all means.
     """
 
-    block: NDArray[np.float64]
-    rows: NDArray[np.int64] | None
-    starts: NDArray[np.float64]
-    solve_directly: Callable[..., Any] | None
-    solve_pose: Callable[..., Any]
+    block: Floats
+    rows: Ints | None
+    starts: Floats
+    solve_directly: Callable[[Floats, Floats, Floats], Solved] | None
+    solve_pose: Callable[[Floats, Ints | None, Floats, Floats, Floats, Floats], Solved]
 
 
 @checked
@@ -81,10 +87,10 @@ class Chain:
         reference: (nq,) the configuration that joints outside the chain are held at.
         held: Entries of a configuration that place the frames but are no coordinates: those of joints on the way that
             are locked, or follow a locked one. Mostly there are none.
-        has_lane: Whether the fast lane can take it: it has one frame, and can move.
+        has_pose_solver: Whether it has one frame, and can move: then there is a ``pose_solver``.
         movers: Ids of all joints of the model that move with the coordinates, those that mimic one included.
-        paths: The arrays the compiled loops take.
-        kernels: The compiled loops.
+        paths: The joints as arrays.
+        kernels: The compiled loops, which take the chain as a ``block``.
         tip: Pinocchio's placement of the first frame.
     """
 
@@ -146,7 +152,7 @@ class Chain:
         plain, entries = self.coordinates.plain, self.coordinates.plain_q
         self._least, self._most = np.full(model.nq, -np.inf), np.full(model.nq, np.inf)
         self._least[entries], self._most[entries] = self.limits.lower[plain], self.limits.upper[plain]
-        self.has_lane = len(self.frames) == 1 and not self.limits.rigid
+        self.has_pose_solver = len(self.frames) == 1 and not self.limits.rigid
         self.kernels = _kernels()
         self._own = Scratch(model)
         self.tip = Placing(model, self.frame_ids[0])
@@ -351,37 +357,47 @@ class Chain:
         """Gains (k, n, 6) for the atlas at coordinates X (k, n); zero for a chain with several frames."""
         gains = np.zeros((*X.shape, 6), np.float32)
         if len(self.frames) == 1:
-            self.kernels.gains_of(*self.paths.arrays, X, gains)
+            self.kernels.gains_of(self.bare, X, gains)
         return gains
 
     @cached_property
-    def pose_lane(self) -> Lane:
-        """The fast lane of a chain with one frame, for whole poses."""
-        return self._lane(oriented=True)
+    def bare(self) -> Floats:
+        """The chain as the compiled loops take it, without samples: one block of numbers; see ``kernel.layout``."""
+        return self._packed(np.zeros(REACH), np.zeros((0, 3)), no_samples(self.n, len(self.frames)))
 
     @cached_property
-    def position_lane(self) -> Lane:
-        """The same for positions at any orientation."""
-        return self._lane(oriented=False)
+    def block(self) -> Floats:
+        """The same with the samples of the atlas, and what bounds the reach of a chain with one frame and solves it."""
+        samples = self.atlas.samples  # first of all: it says so where a joint has no limits
+        reach = self.reach(0, oriented=True).array if self.has_pose_solver else np.zeros(REACH)
+        return self._packed(reach, self.form, samples)
 
-    def _lane(self, oriented: bool) -> Lane:
-        kernels = self.kernels
+    def _packed(self, reach: Floats, form: Floats, samples: Samples) -> Floats:
         joints = [self.model.joints[int(j)] for j in self.coordinates.joints]
         places = np.array([(joint.idx_q, joint.nq == 2) for joint in joints], dtype=np.int64)
-        block = kernels.pack(
-            self.paths.arrays,
-            self.limits.arrays,
-            self.atlas.arrays,
-            (self._least, self._most, places),
-            self.reach(0, oriented).array,
-            self.form,
-        )
-        return Lane(
+        entries = Entries(self._least, self._most, places)
+        return pack(Packed(self.paths.arrays, self.limits.arrays, entries, reach, form), samples)
+
+    @cached_property
+    def pose_solver(self) -> PoseSolver:
+        """The compiled solver of a chain with one frame, for whole poses."""
+        return self._solver(self.block, oriented=True)
+
+    @cached_property
+    def position_solver(self) -> PoseSolver:
+        """The same for positions at any orientation."""
+        samples = self.atlas.samples
+        block = self._packed(self.reach(0, oriented=False).array, self.form, samples)
+        return self._solver(block, oriented=False)
+
+    def _solver(self, block: Floats, oriented: bool) -> PoseSolver:
+        kernels = self.kernels
+        return PoseSolver(
             block,
             None if oriented else kernels.POSITION,
-            self.sample(LANE, (DEFAULT_SEED, 0)),
-            kernels.solve_directly.compiled() if oriented and len(self.form) else None,
-            kernels.solve_pose.compiled(oriented),
+            self.sample(RESTARTS, (DEFAULT_SEED, 0)),
+            kernels.compiled(kernels.solve_directly) if oriented and len(self.form) else None,
+            kernels.compiled(kernels.solve_pose, oriented),
         )
 
     def sample(self, count: int, seed: tuple[int, ...]) -> NDArray[np.float64]:
@@ -430,7 +446,7 @@ class Chain:
         population = np.atleast_2d(array("X", X, "...", self.n, error=InvalidConfiguration, finite=False))
         population = population.reshape(-1, self.n)
         flat = np.empty((len(population), len(self.frames), 12))
-        self.kernels.poses(*self.paths.arrays, population, flat)
+        self.kernels.poses(self.bare, population, flat)
         poses = np.zeros((*flat.shape[:2], 4, 4))
         poses[..., :3, :3] = flat[..., :9].reshape(*flat.shape[:2], 3, 3)
         poses[..., :3, 3] = flat[..., 9:]
@@ -455,8 +471,8 @@ def _remade(
     return Chain(make(*parts), frames, locked=locked, limits=ranges, reference=reference)
 
 
-def _kernels() -> ModuleType:
+def _kernels() -> type[Kernels]:
     """The compiled loops, imported late: what compiles them takes 0.4 s to import."""
-    from pin_metaik.kinematics import loops
+    from pin_metaik.kinematics.kernel.entry import Kernels
 
-    return loops
+    return Kernels

@@ -1,8 +1,8 @@
 """Which axes of an arm meet and which are parallel: what a closed form of its inverse kinematics has to know.
 
-Two kinds of arms of six turning joints have the same one (see ``branches``): those with a wrist whose three axes meet
-behind two parallel ones, like most industrial arms, and those with three parallel axes and two that meet, like
-Universal Robots' arms.
+Two kinds of arms of six turning joints have the same one (see ``kernel.closed_form``): those with a wrist whose three
+axes meet behind two parallel ones, like most industrial arms, and those with three parallel axes and two that meet,
+like Universal Robots' arms.
 """
 
 from __future__ import annotations
@@ -10,21 +10,20 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.kinematics.kernel.layout import COLUMN, POSE, ROTATES
 from pin_metaik.kinematics.paths import Paths, matrix_of
 
-CLOSE = 1e-6  # m or rad: axes this near to each other meet, or are parallel; what that leaves, a descent takes away
+CLOSE = 1e-6  # m or rad: axes this near to each other meet, or are parallel; a descent removes the error that leaves
 NOMINAL = 5e-3  # ... of an arm that was measured: its closed form no longer solves, but still proves
-DONE, DESCEND, SEARCH = 0, 1, 2  # what is left to do: nothing, from a branch that is nearly there, or from anywhere
 
 Floats = NDArray[np.float64]
 
 
 def closed_form(paths: Paths, close: float = CLOSE) -> Floats:
-    """What ``branches`` takes (16, 3), or no rows (0, 3) for an arm of neither kind.
+    """The closed form (16, 3), or no rows (0, 3) for an arm of neither kind; ``kernel.layout`` names its rows.
 
-    In the configuration where all angles are 0, in the world frame unless said otherwise:
-
-    ``close`` (m or rad) is how near axes meet, or are parallel. Rows:
+    ``close`` (m or rad) is how near to each other axes meet, or are parallel. In the configuration where all angles are
+    0, in the world frame unless said otherwise, the rows are:
 
     * 0 to 5: the axes.
     * 6: a point O1 on axis 1; 7 to 10: the ways from there to O2, O3, O4 and O5, where the last axes meet; of a wrist
@@ -35,13 +34,13 @@ def closed_form(paths: Paths, close: float = CLOSE) -> Floats:
       does (1) or the other way (-1); else 0.
     """
     none = np.zeros((0, 3))
-    single = len(paths.ends) == 2 and len(paths.joints) == 6 and len(set(paths.wiring[:, 0].tolist())) == 6
-    if not single or not (paths.wiring[:, 1] == 1).all() or not (paths.joints[:, 12:] == [1.0, 0.0]).all():
+    single = len(paths.ends) == 2 and len(paths.joints) == 6 and len(set(paths.wiring[:, COLUMN].tolist())) == 6
+    if not single or not (paths.wiring[:, ROTATES] == 1).all() or not (paths.joints[:, POSE:] == [1.0, 0.0]).all():
         return none
     frames = np.empty((7, 4, 4))
     placement = np.eye(4)
     for i, row in enumerate([*paths.joints, paths.tips[0]]):
-        placement = frames[i] = placement @ matrix_of(row[:12])
+        placement = frames[i] = placement @ matrix_of(row)
     axes, points = frames[:6, :3, 2], frames[:6, :3, 3].copy()
     wrist = _meeting(axes[4:], points[4:], close)
     if wrist is None or not _parallel(axes[1], axes[2], close):

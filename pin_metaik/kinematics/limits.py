@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, checked_as, number
 from pin_metaik.errors import InvalidBounds
+from pin_metaik.kinematics.kernel.layout import Bounds
 from pin_metaik.optimize import Box
 
 UNBOUNDED = 1e300
@@ -60,9 +61,9 @@ class Limits:
         return list(zip(self.lower.tolist(), self.upper.tolist(), strict=True))
 
     @cached_property
-    def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
-        """Lower, upper and winds as every search takes them."""
-        return self.lower, self.upper, self.winds.astype(np.int64)
+    def arrays(self) -> Bounds:
+        """Lower, upper and winds as the compiled loops take them."""
+        return Bounds(self.lower, self.upper, self.winds.astype(np.int64))
 
     @cached_property
     def stuck(self) -> tuple[str, ...]:

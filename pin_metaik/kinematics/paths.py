@@ -10,6 +10,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from pin_metaik.errors import UnsupportedJoint
+from pin_metaik.kinematics.kernel.layout import Arm
 
 UP = np.array([0.0, 0.0, 1.0])
 HALF_ABOUT_X = np.array([1.0, -1.0, -1.0])  # multiplied into the columns
@@ -18,7 +19,7 @@ RIGID = 1e-12  # of R'R, by how much a rotation of double precision may miss the
 
 @dataclass(frozen=True, eq=False)
 class Paths:
-    """The way from the world to each of T tips, over S joints, in n coordinates; see ``kernels`` for the layout."""
+    """The way from the world to each of T tips, over S joints, in n coordinates; see ``kernel.layout``."""
 
     joints: NDArray[np.float64]  # (S, 14)
     wiring: NDArray[np.int64]  # (S, 2)
@@ -26,9 +27,9 @@ class Paths:
     tips: NDArray[np.float64]  # (T, 12)
 
     @property
-    def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
-        """The four arrays in the order in which every kernel takes them."""
-        return self.joints, self.wiring, self.ends, self.tips
+    def arrays(self) -> Arm:
+        """The four arrays as the compiled loops take them."""
+        return Arm(self.joints, self.wiring, self.ends, self.tips)
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array
 from pin_metaik.errors import InvalidTarget
-
-ORTHONORMAL = 1e-6
-"""How far R'R may be from the identity, and det R from 1, before a matrix is not taken for a rotation."""
+from pin_metaik.kinematics.kernel.layout import ORTHONORMAL
 
 
 class Pose(NamedTuple):

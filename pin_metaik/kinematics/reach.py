@@ -18,10 +18,10 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, ROUNDING, SCALE, SHIFT
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.paths import Paths, matrix_of
 
-ROUNDING = 1e-9  # m, of a target and of what is compared with it
 DIGITS = 64.0 * float(np.finfo(float).eps)  # of a sum of a few products, for each joint
 SWEEPS = 50
 
@@ -59,7 +59,7 @@ class Reach:
 
     @property
     def array(self) -> NDArray[np.float64]:
-        """(8,) all of it, as the fast lane takes it."""
+        """(8,) all of it, as the compiled loops take it."""
         return np.array([*self.anchor, *self.end, self.least, self.most])
 
     def gap(self, pose: pin.SE3, distance: float = 0.0, angle: float = 0.0) -> float:
@@ -137,13 +137,13 @@ def links_of(
     travel = np.zeros(3)
     slack = 0.0
     for s in range(paths.ends[tip], paths.ends[tip + 1]):
-        row, (column, rotates) = paths.joints[s], paths.wiring[s]
-        placement = placement @ matrix_of(row[:12])
+        row, column, rotates = paths.joints[s], paths.wiring[s, COLUMN], paths.wiring[s, ROTATES]
+        placement = placement @ matrix_of(row)
         if rotates:
             links.append(Link(placement[:3, 3] + travel, placement[:3, 2], slack))
             placement, travel, slack = np.eye(4), np.zeros(3), 0.0
         else:
-            ends = row[12] * np.array([lower[column], upper[column]]) + row[13]
+            ends = row[SCALE] * np.array([lower[column], upper[column]]) + row[SHIFT]
             travel = travel + ends.mean() * placement[:3, 2]
             slack += 0.5 * float(abs(ends[1] - ends[0]))
     placement = placement @ matrix_of(paths.tips[tip])

@@ -6,6 +6,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import pin_metaik as mik
+from pin_metaik.kinematics.kernel import reference
 from pin_metaik.kinematics.paths import turned_to_z
 from tests.robots_under_test import ARMS, CATALOGUE, chain_of
 
@@ -79,31 +80,12 @@ def test_the_rotation_error_is_exact_near_zero_and_near_half_a_turn() -> None:
     assert_allclose(problem.costs(-angles[:, None]), angles, atol=1e-14, rtol=1e-14)
 
 
-def reference_descent(problem: mik.IKProblem, x: np.ndarray, steps: int) -> np.ndarray:
-    """The damped least squares of the kernel written with Pinocchio's FK, frame Jacobian and Jlog3."""
-    chain, target = problem.chain, problem.targets[0]
-    model, data, limits = chain.model, chain.model.createData(), chain.limits
-    goal, frame = target.pose, chain.frame_ids[0]
-    columns = [model.joints[int(j)].idx_v for j in chain.coordinates.joints]
-    for _ in range(steps):
-        q = chain.q(x)
-        J = pin.computeFrameJacobian(model, data, q, frame, pin.LOCAL_WORLD_ALIGNED)[:, columns]
-        error = goal.actInv(pin.updateFramePlacement(model, data, frame))
-        r = np.concatenate([error.translation, pin.log3(error.rotation)])
-        to_goal = goal.rotation.T
-        J = np.vstack([to_goal @ J[:3], to_goal @ J[3:]])  # the whole orientation counts: angular velocity will do
-        slope = J.T @ r
-        blocked = ((x <= limits.lower) & (slope > 0)) | ((x >= limits.upper) & (slope < 0))
-        J[:, blocked] = 0.0
-        damped = (0.005 * (r @ r) + 1e-9) * np.eye(6)
-        dx = -J.T @ np.linalg.solve(J @ J.T + damped, r)
-        crossing = ~blocked & ((x + dx < limits.lower) | (x + dx > limits.upper))
-        if crossing.any():  # those go onto their limits, and the others make up for it
-            onto = np.where(crossing, limits.clip(x + dx) - x, 0.0)
-            free = np.where(crossing, 0.0, J)
-            dx = onto - free.T @ np.linalg.solve(free @ free.T + damped, r + J @ onto)
-        x = limits.clip(x + dx)
-    return x
+def as_reference(problem: mik.IKProblem) -> reference.Problem:
+    """The same problem as the readable solver takes it."""
+    chain, limits = problem.chain, problem.chain.limits
+    columns = [chain.model.joints[int(j)].idx_v for j in chain.coordinates.joints]
+    goal = problem.targets[0].pose
+    return reference.Problem(chain.model, chain.frame_ids[0], goal, chain.q, columns, limits.lower, limits.upper)
 
 
 @pytest.mark.parametrize("name", [n for n in CATALOGUE + ARMS if n not in ("puma_offset", "rv7fl_paper", "cobra600")])
@@ -117,4 +99,19 @@ def test_the_descent_takes_the_steps_that_pinocchio_gives(name: str) -> None:
         for steps in (1, 2):  # so close, every step improves: the best is the last
             refined = mik.DLS().refine(problem, start[None], steps + 1)
             # Two steps through a matrix of condition up to 1e8 near singularities.
-            assert_allclose(refined.x, reference_descent(problem, start, steps), atol=1e-6)
+            expected, _, _ = reference.descend(as_reference(problem), start, steps + 1, 0.005, 0.49)
+            assert_allclose(refined.x, expected, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["panda", "ur5", "pr2", "rv7fl"])
+def test_the_readable_solver_goes_the_same_way(name: str) -> None:
+    """Wherever rounding does not decide which way a start far from the target goes."""
+    chain, rng, alike = chain_of(name), np.random.default_rng(3), 0
+    for x_goal in chain.box.sample(rng, 20):
+        problem = mik.IKProblem.of(chain, chain.placements(chain.q(x_goal))[0])
+        starts = chain.box.sample(rng, 20)
+        refined = mik.DLS().refine(problem, starts, 400)
+        x, spent = reference.solve(as_reference(problem), starts, 400)
+        assert x is None or problem.accepts(chain.q(x))
+        alike += spent == refined.evaluations and (x is not None) == refined.met
+    assert alike >= 18

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.kinematics import Chain
+from pin_metaik.kinematics.kernel.layout import SCALE, SHIFT
 
 
 def jacobians(chain: Chain, X: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -15,9 +16,9 @@ def jacobians(chain: Chain, X: NDArray[np.float64]) -> NDArray[np.float64]:
     axes, points = [], []
     for row, (column, rotates) in zip(joints, wiring, strict=True):
         R, p = R @ row[:9].reshape(3, 3), p + R @ row[9:12]
-        axes.append(row[12] * R[:, :, 2])
+        axes.append(row[SCALE] * R[:, :, 2])
         points.append(p)
-        x = row[12] * X[:, column] + row[13]
+        x = row[SCALE] * X[:, column] + row[SHIFT]
         if rotates:
             turn = np.zeros((len(X), 3, 3))
             turn[:, 0, 0] = turn[:, 1, 1] = np.cos(x)

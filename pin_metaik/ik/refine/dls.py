@@ -11,7 +11,6 @@ from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.protocol import Refinement, given_starts
-from pin_metaik.kinematics.atlas import Atlas, no_atlas
 
 PROGRESS = 0.49  # a start is given up unless four steps bring the squared error below this share,
 SETTLED = 1.0 - 1e-9  # ... or this one, when there is nothing else to try
@@ -45,7 +44,7 @@ class DLS:
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent."""
         starts = given_starts(problem, starts, evaluations)
-        return self._descend(problem, no_atlas(problem.chain.n, len(problem.targets)), starts, evaluations, PROGRESS)
+        return self._descend(problem, problem.chain.bare, starts, evaluations, PROGRESS)
 
     def refine_anywhere(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """The same, but from the sampled configurations that have the nearest poses, too.
@@ -53,31 +52,23 @@ class DLS:
         The first start (s, n) goes before them when its pose is nearer to the target than theirs.
         """
         starts = given_starts(problem, starts, evaluations)
-        return self._descend(problem, problem.chain.atlas, starts, evaluations, PROGRESS)
+        return self._descend(problem, problem.chain.block, starts, evaluations, PROGRESS)
 
     def settle(self, problem: IKProblem, x: NDArray[np.float64], evaluations: int) -> Refinement:
         """Go on from x (n,) in small steps as long as it gets nearer at all: for targets that cannot be met."""
         start = given_starts(problem, [x], evaluations)
-        return replace(self, damping=STIFF)._descend(
-            problem, no_atlas(problem.chain.n, len(problem.targets)), start, evaluations, SETTLED
-        )
+        return replace(self, damping=STIFF)._descend(problem, problem.chain.bare, start, evaluations, SETTLED)
 
     def _descend(
-        self, problem: IKProblem, atlas: Atlas, starts: NDArray[np.float64], evaluations: int, progress: float
+        self,
+        problem: IKProblem,
+        block: NDArray[np.float64],
+        starts: NDArray[np.float64],
+        evaluations: int,
+        progress: float,
     ) -> Refinement:
-        chain = problem.chain
-        best = np.empty(chain.n)
-        spent, solved_by = chain.kernels.descend(
-            *chain.paths.arrays,
-            problem.tasks,
-            problem.descended,
-            *chain.limits.arrays,
-            *atlas.arrays,
-            starts,
-            self.damping,
-            progress,
-            self.iterations,
-            evaluations,
-            best,
-        )
+        best = np.empty(problem.chain.n)
+        settings = np.array([self.damping, progress, self.iterations, evaluations])
+        descend = problem.chain.kernels.descend
+        spent, solved_by = descend(block, problem.tasks, problem.descended, starts, settings, best)
         return Refinement(best, solved_by >= 0, spent)

@@ -11,9 +11,10 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.kinematics.kernel.layout import COLUMN, POSE, ROTATES, ROUNDING, SCALE, SHIFT
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.paths import Paths, matrix_of
-from pin_metaik.kinematics.reach import ROUNDING, links_of, tightened
+from pin_metaik.kinematics.reach import links_of, tightened
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -30,7 +31,7 @@ class Path:
     """The joints from the world to one tip, whichever end is the world.
 
     Attributes:
-        joints: (S, 14) placement, scale and shift of each; see ``kernels``.
+        joints: (S, 14) placement, scale and shift of each; see ``kernel.layout``.
         wiring: (S, 2) coordinate, and whether it turns.
         tip: (12,) placement of the tip in the last joint frame.
     """
@@ -41,8 +42,8 @@ class Path:
 
     def reversed(self) -> Path:
         """The same joints seen from the tip, with the world as the tip."""
-        links = [np.linalg.inv(matrix_of(row)) for row in [*self.joints[:, :12], self.tip]][::-1]
-        rows = [np.append(_flat(link), -row[12:]) for link, row in zip(links[:-1], self.joints[::-1], strict=True)]
+        links = [np.linalg.inv(matrix_of(row)) for row in [*self.joints, self.tip]][::-1]
+        rows = [np.append(_flat(link), -row[POSE:]) for link, row in zip(links[:-1], self.joints[::-1], strict=True)]
         return Path(np.array(rows), np.ascontiguousarray(self.wiring[::-1]), _flat(links[-1]))
 
     def with_turn(self, first: int, axis: int) -> Path:
@@ -66,9 +67,9 @@ class Path:
         """World placements (S + 1, 4, 4) of the joints, before they move, and of the tip at coordinates x (n,)."""
         frames, placement = [], np.eye(4)
         for row, (column, turns) in zip(self.joints, self.wiring, strict=True):
-            placement = placement @ matrix_of(row[:12])
+            placement = placement @ matrix_of(row)
             frames.append(placement)
-            value, motion = row[12] * x[column] + row[13], np.eye(4)
+            value, motion = row[SCALE] * x[column] + row[SHIFT], np.eye(4)
             if turns:
                 c, s = np.cos(value), np.sin(value)
                 motion[:2, :2] = [[c, -s], [s, c]]
@@ -173,12 +174,12 @@ def _bounded(path: Path, limits: Limits) -> tuple[Floats, Floats] | None:
     one = limits.one_turn()
     lower, upper = one.lower.copy(), one.upper.copy()
     for column in range(len(lower)):
-        on_path = path.wiring[:, 0] == column
+        on_path = path.wiring[:, COLUMN] == column
         if not on_path.any():
             lower[column] = upper[column] = 0.0
         elif not np.isfinite([lower[column], upper[column]]).all():
-            scales = path.joints[on_path, 12]
-            if not path.wiring[on_path, 1].all() or (np.round(scales) != scales).any():
+            scales = path.joints[on_path, SCALE]
+            if not path.wiring[on_path, ROTATES].all() or (np.round(scales) != scales).any():
                 return None
             lower[column] = -np.pi if np.isinf(upper[column]) else upper[column] - 2.0 * np.pi
             lower[column] = one.lower[column] if np.isfinite(one.lower[column]) else lower[column]
@@ -193,14 +194,14 @@ def _knots(path: Path, lower: Floats, upper: Floats) -> Floats:
     links, _, _ = links_of(paths, lower, upper, 0)
     knots = np.zeros(S)
     if links:
-        knots[path.wiring[:, 1] == 1] = tightened(links[1:], len(links))[0]
+        knots[path.wiring[:, ROTATES] == 1] = tightened(links[1:], len(links))[0]
     return knots
 
 
 def _wrist(path: Path, lower: Floats, upper: Floats) -> Floats | None:
     """Where on the last three axes (3,) they meet, if they do and nothing else follows their coordinates."""
-    S, columns = len(path.joints), path.wiring[:, 0]
-    own = S > 3 and path.wiring[-3:, 1].all() and all((columns == c).sum() == 1 for c in columns[-3:])
+    S, columns = len(path.joints), path.wiring[:, COLUMN]
+    own = S > 3 and path.wiring[-3:, ROTATES].all() and all((columns == c).sum() == 1 for c in columns[-3:])
     if not own:
         return None
     frames = path.frames(lower + 0.37 * (upper - lower))[-4:-1]
@@ -218,7 +219,7 @@ def _wrist(path: Path, lower: Floats, upper: Floats) -> Floats | None:
 
 def _miss(path: Path, knots: Floats) -> float:
     """How far (m) turns of a wrist, the last three joints, may move its first axis' point as the tip sees it."""
-    frames = path.frames(np.zeros(int(path.wiring[:, 0].max()) + 1))[-4:-1]
+    frames = path.frames(np.zeros(int(path.wiring[:, COLUMN].max()) + 1))[-4:-1]
     points = frames[:, :3, 3] + knots[-3:, None] * frames[:, :3, 2]
     first, second = np.linalg.norm(np.diff(points, axis=0), axis=1)
     return float(4.0 * first + 2.0 * second)  # about axis 2, by twice the distance; about axis 3, by twice both
@@ -229,8 +230,8 @@ def _reach(path: Path, knots: Floats, lower: Floats, upper: Floats) -> float:
     frames = path.frames(0.5 * (lower + upper))
     points = frames[:, :3, 3].copy()
     points[:-1] += knots[:, None] * frames[:-1, :3, 2]
-    slides = path.wiring[:, 1] == 0
-    travel = np.abs(path.joints[slides, 12]) * (upper - lower)[path.wiring[slides, 0]]
+    slides = path.wiring[:, ROTATES] == 0
+    travel = np.abs(path.joints[slides, SCALE]) * (upper - lower)[path.wiring[slides, COLUMN]]
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum() + travel.sum())
 
 

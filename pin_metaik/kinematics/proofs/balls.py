@@ -11,9 +11,9 @@ import math
 from typing import TypeAlias
 
 from pin_metaik.compiled import inline
-from pin_metaik.kinematics.branches import Turn, Vector, cross, dot, minus, plus, turned
-from pin_metaik.kinematics.kernels import cos_sin
-from pin_metaik.kinematics.reach import ROUNDING
+from pin_metaik.kinematics.kernel.closed_form import Turn, Vector, cross, dot, minus, plus, turned
+from pin_metaik.kinematics.kernel.forward import cos_sin
+from pin_metaik.kinematics.kernel.layout import ROUNDING
 
 Ball: TypeAlias = tuple[Vector, float]
 Arc: TypeAlias = tuple[Turn, float]

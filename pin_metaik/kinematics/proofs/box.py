@@ -14,8 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, allocating, inline, shared
-from pin_metaik.kinematics.branches import Vector, cross, minus, vector
-from pin_metaik.kinematics.kernels import forward
+from pin_metaik.kinematics.kernel.closed_form import Vector, cross, minus, vector
+from pin_metaik.kinematics.kernel.forward import forward
+from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE
 from pin_metaik.kinematics.proofs.balls import chord, norm
 
 START = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])  # the world, seen from the world
@@ -128,12 +129,12 @@ def lay(arm: BoxArm, target: Floats, centre: Floats, width: Floats, laid: Laid) 
         moved = times(turn, minus(o, at))
         write((goal[0] + moved[0], goal[1] + moved[1], goal[2] + moved[2]), laid.target_points[k])
         write(times(turn, z), laid.target_axes[k])
-        half = abs(joints[k, 12]) * width[wiring[k, 0]]
-        laid.half[k], laid.moves[k] = half, chord(half) if wiring[k, 1] == 1 else half
+        half = abs(joints[k, SCALE]) * width[wiring[k, COLUMN]]
+        laid.half[k], laid.moves[k] = half, chord(half) if wiring[k, ROTATES] == 1 else half
     for j in range(S):
         z, o = vector(laid.axes[j]), vector(laid.points[j])
         for k in range(S):
-            if wiring[j, 1] == 1:
+            if wiring[j, ROTATES] == 1:
                 laid.distances[k, j] = 0.0 if j == k else norm(cross(z, minus(vector(laid.points[k]), o)))
                 laid.angles[k, j] = 0.0 if j == k else norm(cross(z, vector(laid.axes[k])))
             else:

@@ -17,7 +17,8 @@ from __future__ import annotations
 import math
 
 from pin_metaik.compiled import Floats, inline, shared
-from pin_metaik.kinematics.branches import cross, dot, minus, vector
+from pin_metaik.kinematics.kernel.closed_form import cross, dot, minus, vector
+from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES
 from pin_metaik.kinematics.proofs.balls import norm
 from pin_metaik.kinematics.proofs.box import BoxArm, Laid, cosine_range
 
@@ -51,7 +52,7 @@ def excluded_by_points(arm: BoxArm, laid: Laid, near: float, aligned: float, wei
         by_turn = (turned / lean) ** POWER * (turned / lean) / lean
         for j in range(S):
             weight = laid.distances[k, j] * by_place + laid.angles[k, j] * by_turn
-            weights[arm.wiring[j, 0]] += laid.moves[j] * weight
+            weights[arm.wiring[j, COLUMN]] += laid.moves[j] * weight
     return False
 
 
@@ -60,14 +61,14 @@ def excluded_by_pairs(arm: BoxArm, laid: Laid, near: float, aligned: float) -> b
     """Test 2."""
     S = laid.half.shape[0]
     for i in range(S):
-        if arm.wiring[i, 1] == 0:
+        if arm.wiring[i, ROTATES] == 0:
             continue
         place, lean = near, aligned  # what the joints before i, and then those after j, make of the axes
         for m in range(i):
             place += laid.moves[m] * laid.distances[i, m]
             lean += laid.moves[m] * laid.angles[i, m]
         for j in range(i + 1, S):
-            if arm.wiring[j, 1] == 1 and excluded_by_pair(arm, laid, i, j, near, aligned, place, lean):
+            if arm.wiring[j, ROTATES] == 1 and excluded_by_pair(arm, laid, i, j, near, aligned, place, lean):
                 return True
     return False
 
@@ -88,12 +89,12 @@ def excluded_by_pair(
     # Between the axes: least and most of distance and cosine, and by how much more joints move these and the heights.
     shortest, least = norm(way), dot(z_i, z_j)
     longest, most = shortest, least
-    one = j == i + 2 and arm.wiring[i + 1, 1] == 1
+    one = j == i + 2 and arm.wiring[i + 1, ROTATES] == 1
     if one:
         shortest, longest, least, most = over_one_joint(laid, i)
     span = turn = height_j = height_i = carried = tilted = 0.0
     for m in range(j - 1, i, -1):  # how far o_j and z_j have been moved by the joints after m
-        if arm.wiring[m, 1] == 1:
+        if arm.wiring[m, ROTATES] == 1:
             if not one:
                 span += moves[m] * min(distances[i, m], distances[j, m] + carried)
                 turn += moves[m] * min(angles[i, m], angles[j, m] + tilted)
@@ -106,7 +107,7 @@ def excluded_by_pair(
             carried += moves[m]
     carried = 0.0
     for m in range(i + 1, j):  # how far o_i has been moved, as link j sees it, by the joints before m
-        if arm.wiring[m, 1] == 1:
+        if arm.wiring[m, ROTATES] == 1:
             height_i += moves[m] * angles[j, m] * (distances[i, m] + carried)
             carried += moves[m] * distances[i, m]
         else:

@@ -17,7 +17,8 @@ from __future__ import annotations
 import math
 
 from pin_metaik.compiled import Floats, inline, shared
-from pin_metaik.kinematics.branches import cross, dot, minus, vector
+from pin_metaik.kinematics.kernel.closed_form import cross, dot, minus, vector
+from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE
 from pin_metaik.kinematics.proofs.balls import norm
 from pin_metaik.kinematics.proofs.box import BoxArm, Laid, times, write
 
@@ -53,7 +54,7 @@ def excluded_to_first_order(
         here = i <= cut
         z = vector(laid.axes[i]) if here else vector(laid.target_axes[i])
         arms = minus(P, vector(laid.points[i])) if here else minus(there, vector(laid.target_points[i]))
-        if arm.wiring[i, 1] == 1:
+        if arm.wiring[i, ROTATES] == 1:
             swing = cross(z, arms)
             write(swing, rows[i, :3])
             if here:
@@ -79,10 +80,10 @@ def excluded_to_first_order(
     for j in range(S):
         here = j <= cut
         for i in range(0 if here else j + 1, j if here else S):  # joints that carry joint j
-            if arm.wiring[i, 1] == 1:
+            if arm.wiring[i, ROTATES] == 1:
                 z = vector(laid.axes[i]) if here else vector(laid.target_axes[i])
                 place += laid.half[i] * laid.half[j] * norm(cross(z, vector(rows[j, :3])))
-                if arm.wiring[j, 1] == 1:
+                if arm.wiring[j, ROTATES] == 1:
                     lean += laid.half[i] * laid.half[j] * (0.5 * laid.angles[i, j] + (0.0 if here else twist))
     cubes = (before**3 + after**3) / 6.0
     place += cubes * arm.reach[0] + 0.5 * slid * (before * before + after * after)
@@ -98,7 +99,7 @@ def excluded_to_first_order(
     )
     columns[:, :] = 0.0
     for i in range(S):
-        c, scale = arm.wiring[i, 0], arm.joints[i, 12]
+        c, scale = arm.wiring[i, COLUMN], arm.joints[i, SCALE]
         for k in range(3):
             columns[c, k] += scale * by_place * rows[i, k]
             columns[c, 3 + k] += scale * by_turn * rows[i, 3 + k]

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit
+from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES
 from pin_metaik.kinematics.proofs.box import BoxArm, laid_for, lay
 from pin_metaik.kinematics.proofs.box_balls import excluded_by_balls
 from pin_metaik.kinematics.proofs.box_linear import excluded_to_first_order
@@ -25,7 +26,7 @@ def middle_joint(arm: BoxArm, half: Floats, last: int, total: float) -> int:
     """The joint after which the chain is cut: half of the uncertainty is on either side."""
     cut, sum_ = 0, 0.0
     for k in range(last):
-        sum_ += half[k] if arm.wiring[k, 1] == 1 else 0.0
+        sum_ += half[k] if arm.wiring[k, ROTATES] == 1 else 0.0
         if sum_ <= 0.5 * total:
             cut = k
     return cut
@@ -83,7 +84,7 @@ def cover(
     rows, columns, splits = np.empty((S, 6)), np.empty((n, 6)), np.zeros(n, np.int64)
     laid = laid_for(S)
     for k in range(last):
-        splits[wiring[k, 0]] = 1
+        splits[wiring[k, COLUMN]] = 1
     looked = kept = 0
     while count > 0:
         if looked >= boxes or kept == leaves.shape[0] or count + 1 > waiting.shape[0]:
@@ -100,7 +101,7 @@ def cover(
             continue
         total = 0.0
         for k in range(last):
-            total += laid.half[k] if wiring[k, 1] == 1 else 0.0
+            total += laid.half[k] if wiring[k, ROTATES] == 1 else 0.0
         if total < FIRST_ORDER:
             cut = last - 1 if has_wrist else middle_joint(arm, laid.half, last, total)
             if excluded_to_first_order(arm, laid, width, near, aligned, cut, has_wrist, rows, columns, way):
@@ -112,7 +113,7 @@ def cover(
                 at = c
         if at < 0 and wrist[0] == 2:
             for s in range(last, S):
-                c = wiring[s, 0]
+                c = wiring[s, COLUMN]
                 if width[c] > least and (at < 0 or width[c] > width[at]):
                     at = c
         if at < 0:

@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 
 from pin_metaik.compiled import Floats, inline, shared
-from pin_metaik.kinematics.branches import angle, cross, dot, vector
+from pin_metaik.kinematics.kernel.closed_form import angle, cross, dot, vector
+from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, ROUNDING, SCALE, SHIFT
 from pin_metaik.kinematics.proofs.balls import (
     Arc,
     arc_from_to,
@@ -20,7 +21,6 @@ from pin_metaik.kinematics.proofs.balls import (
     turned_ball,
 )
 from pin_metaik.kinematics.proofs.box import BoxArm, Laid, times
-from pin_metaik.kinematics.reach import ROUNDING
 
 
 @shared
@@ -38,7 +38,7 @@ def excluded_by_wrist(arm: BoxArm, laid: Laid, centre: Floats, width: Floats, al
     goal, goal_side = vector(laid.target_axes[w + 2]), times(laid.turn, side)
     off = off_side = aligned
     for j in range(w):
-        if arm.wiring[j, 1] == 1:
+        if arm.wiring[j, ROTATES] == 1:
             off += laid.moves[j] * lever(vector(laid.axes[j]), goal)
             off_side += laid.moves[j] * lever(vector(laid.axes[j]), goal_side)
     # k1 . Rot(k2, turn) k3 = k1 . goal
@@ -66,7 +66,7 @@ def excluded_by_wrist(arm: BoxArm, laid: Laid, centre: Floats, width: Floats, al
 @inline
 def turns(arm: BoxArm, centre: Floats, width: Floats, s: int, arc: Arc, start: Floats) -> bool:
     """Whether joint s may turn by an arc from the centre within the box; its coordinate there goes into ``start``."""
-    c, scale, shift = arm.wiring[s, 0], arm.joints[s, 12], arm.joints[s, 13]
+    c, scale, shift = arm.wiring[s, COLUMN], arm.joints[s, SCALE], arm.joints[s, SHIFT]
     middle, half = scale * centre[c] + shift, abs(scale) * width[c]
     lower, upper = middle - half, middle + half
     at = middle + angle(arc[0])

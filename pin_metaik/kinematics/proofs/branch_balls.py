@@ -1,15 +1,37 @@
 """Whether an arm with a closed form reaches a pose within its tolerances: its eight branches on balls.
 
-The steps are those of ``branches``. A branch is left out where a step has no real solution, or a joint no angle inside
-its limits, for any pose within the tolerances; when all eight are, no configuration reaches the pose: that is proved.
-A branch that stays is a small box, all of whose angles are known up to a radius: a place to descend from.
+The steps are those of ``kernel.closed_form``. A branch is left out where a step has no real solution, or a joint no
+angle inside its limits, for any pose within the tolerances; when all eight are, no configuration reaches the pose: that
+is proved. A branch that stays is a small box, all of whose angles are known up to a radius: a place to descend from.
 """
 
 from __future__ import annotations
 
 from pin_metaik.compiled import Floats, Ints, inline, jit
-from pin_metaik.kinematics.branches import Numbers, angle, dot, minus, numbers_of, rotated, vector
-from pin_metaik.kinematics.descent import Bounds
+from pin_metaik.kinematics.kernel.closed_form import Numbers, angle, dot, minus, numbers_of, rotated, vector
+from pin_metaik.kinematics.kernel.layout import (
+    ACROSS,
+    ACROSS_WORLD,
+    AHEAD,
+    COLUMN,
+    FORE,
+    H1,
+    H2,
+    H3,
+    H4,
+    H5,
+    H6,
+    LEVEL,
+    O1,
+    O1_O2,
+    O4_O5,
+    O5_TIP,
+    ROUNDING,
+    SIDE_2,
+    SIDE_3,
+    UPPER,
+    Bounds,
+)
 from pin_metaik.kinematics.proofs.balls import (
     Arc,
     Ball,
@@ -23,7 +45,6 @@ from pin_metaik.kinematics.proofs.balls import (
     turned_ball,
 )
 from pin_metaik.kinematics.proofs.targets import exactly
-from pin_metaik.kinematics.reach import ROUNDING
 
 POSSIBLE, SHOULDER, WRIST, ELBOW, LIMIT = 0, 1, 2, 3, 4  # what is wrong with a branch
 
@@ -31,18 +52,18 @@ POSSIBLE, SHOULDER, WRIST, ELBOW, LIMIT = 0, 1, 2, 3, 4  # what is wrong with a 
 @inline
 def wrist_arcs(form: Floats, ahead: Ball, across: Ball, flip: bool) -> tuple[Arc, Arc, Arc, float]:
     """Turns 4, 5 and 6 that take axis 6 and a direction across it to where they shall be; how far they are not real."""
-    h4, h5, h6 = vector(form[3]), vector(form[4]), vector(form[5])
+    h4, h5, h6 = vector(form[H4]), vector(form[H5]), vector(form[H6])
     one, two, lack = arcs_onto(h4, h5, (h6, 0.0), dot(h4, ahead[0]), ahead[1])
     t5 = two if flip else one
     t4 = arc_from_to(h4, turned_ball(h5, t5, (h6, 0.0)), ahead)
     back = turned_ball(h5, reverse(t5), turned_ball(h4, reverse(t4), across))
-    return t4, t5, arc_from_to(h6, (vector(form[14]), 0.0), back), lack
+    return t4, t5, arc_from_to(h6, (vector(form[ACROSS_WORLD]), 0.0), back), lack
 
 
 @inline
 def elbow_arcs(form: Floats, reach: Ball, other: bool) -> tuple[Arc, Arc, float]:
     """Turns 2 and 3 that take O4 from O2 to ``reach``; how far (m) they are not real."""
-    h2, h3, upper, fore = vector(form[1]), vector(form[2]), vector(form[8]), vector(form[9])
+    h2, h3, upper, fore = vector(form[H2]), vector(form[H3]), vector(form[UPPER]), vector(form[FORE])
     size = norm(reach[0])
     d = 0.5 * (size * size - dot(upper, upper) - dot(fore, fore))
     one, two, lack = arcs_onto(upper, h3, (fore, 0.0), d, size * reach[1] + 0.5 * reach[1] * reach[1])
@@ -60,27 +81,27 @@ def judge_branch(
     The bits of ``number`` are the sides of shoulder, wrist and elbow. ``near`` and ``aligned`` (m, rad) are how far the
     true pose of the tip may be.
     """
-    h1, h2, h3, h4 = vector(form[0]), vector(form[1]), vector(form[2]), vector(form[3])
+    h1, h2, h3, h4 = vector(form[H1]), vector(form[H2]), vector(form[H3]), vector(form[H4])
     shoulder, flip, elbow = number & 1 != 0, number & 2 != 0, number & 4 != 0
-    to_tip = vector(form[11])
-    wrist = minus(minus((pose[9], pose[10], pose[11]), vector(form[6])), rotated(pose, to_tip))
+    to_tip = vector(form[O5_TIP])
+    wrist = minus(minus((pose[9], pose[10], pose[11]), vector(form[O1])), rotated(pose, to_tip))
     reach: Ball = wrist, near + aligned * norm(to_tip)
-    ahead: Ball = rotated(pose, vector(form[12])), aligned
-    across: Ball = rotated(pose, vector(form[13])), aligned
-    one, two, lack = arcs_onto(h2, minus((0.0, 0.0, 0.0), h1), reach, form[15, 0], 0.0)
+    ahead: Ball = rotated(pose, vector(form[AHEAD])), aligned
+    across: Ball = rotated(pose, vector(form[ACROSS])), aligned
+    one, two, lack = arcs_onto(h2, minus((0.0, 0.0, 0.0), h1), reach, form[LEVEL], 0.0)
     if lack > 0.0:
         return SHOULDER, lack
     t1 = two if shoulder else one
-    reach = difference(turned_ball(h1, reverse(t1), reach), (vector(form[7]), 0.0))
+    reach = difference(turned_ball(h1, reverse(t1), reach), (vector(form[O1_O2]), 0.0))
     ahead, across = turned_ball(h1, reverse(t1), ahead), turned_ball(h1, reverse(t1), across)
-    if form[15, 1] != 0.0:  # axes 2, 3 and 4 are parallel, and turn the wrist together
+    if form[SIDE_2] != 0.0:  # axes 2, 3 and 4 are parallel, and turn the wrist together
         t4, t5, t6, lack = wrist_arcs(form, ahead, across, flip)
         if lack > 0.0:
             return WRIST, lack
-        t2, t3, lack = elbow_arcs(form, difference(reach, turned_ball(h4, t4, (vector(form[10]), 0.0))), elbow)
+        t2, t3, lack = elbow_arcs(form, difference(reach, turned_ball(h4, t4, (vector(form[O4_O5]), 0.0))), elbow)
         if lack > 0.0:
             return ELBOW, lack
-        angles[3] = angle(t4[0]) - form[15, 2] * angle(t3[0]) - form[15, 1] * angle(t2[0])
+        angles[3] = angle(t4[0]) - form[SIDE_3] * angle(t3[0]) - form[SIDE_2] * angle(t2[0])
         radii[3] = t4[1] + t3[1] + t2[1]
     else:
         t2, t3, lack = elbow_arcs(form, reach, elbow)
@@ -113,14 +134,14 @@ def possible_branches(
     faults: Floats,
 ) -> int:
     """How many of the eight branches may hold a configuration; see ``judge_pose``."""
-    lower, upper, _ = bounds
+    lower, upper = bounds.lower, bounds.upper
     count = 0
     for number in range(8):
         fault, lack = judge_branch(form, pose, near, aligned, number, angles[number], radii[number])
         joint = -1
         if fault == POSSIBLE:
             for s in range(6):
-                c = wiring[s, 0]
+                c = wiring[s, COLUMN]
                 over = beyond(angles[number, s], radii[number, s], lower[c], upper[c])
                 if over > lack:
                     fault, joint, lack = LIMIT, c, over
@@ -167,4 +188,4 @@ def judge_pose(
     """
     pose, skew = exactly(numbers_of(target))
     near, aligned = (1.0 + skew) * near + deviation[0], aligned + 2.0 * skew + deviation[1]
-    return possible_branches(form, wiring, (lower, upper, winds), pose, near, aligned, angles, radii, faults)
+    return possible_branches(form, wiring, Bounds(lower, upper, winds), pose, near, aligned, angles, radii, faults)

@@ -9,10 +9,10 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.kinematics.kernel.layout import ROUNDING
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.paths import Paths
 from pin_metaik.kinematics.proofs.deviation import deviation, ideal
-from pin_metaik.kinematics.reach import ROUNDING
 
 Floats = NDArray[np.float64]
 BRANCHES, TURN = 8, 2.0 * math.pi

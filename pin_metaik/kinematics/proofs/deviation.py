@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.kinematics.kernel.layout import H1, H2, H3, H4, H6, O1, O1_O2, O4_O5, SIDE_2
 from pin_metaik.kinematics.paths import Paths, matrix_of
 
 Floats = NDArray[np.float64]
@@ -13,9 +14,9 @@ Floats = NDArray[np.float64]
 def ideal(form: Floats) -> Floats:
     """A closed form (16, 3) with axes 3 and, of three parallel ones, 4 parallel to axis 2 to the last digit."""
     exact = form.copy()
-    exact[2] = np.copysign(1.0, form[1] @ form[2]) * form[1]
-    if form[15, 1] != 0.0:
-        exact[3] = form[15, 1] * form[1]
+    exact[H3] = np.copysign(1.0, form[H2] @ form[H3]) * form[H2]
+    if form[SIDE_2] != 0.0:
+        exact[H4] = form[SIDE_2] * form[H2]
     return exact
 
 
@@ -28,11 +29,12 @@ def deviation(paths: Paths, form: Floats) -> tuple[float, float]:
     axes, points = np.empty((6, 3)), np.empty((6, 3))
     placement = np.eye(4)
     for i, row in enumerate(paths.joints):
-        placement = placement @ matrix_of(row[:12])
+        placement = placement @ matrix_of(row)
         axes[i], points[i] = placement[:3, 2], placement[:3, 3]
     tip = (placement @ matrix_of(paths.tips[0]))[:3, 3]
-    meant = form[6] + np.concatenate([np.zeros((1, 3)), np.cumsum(form[7:11], axis=0)])[[0, 1, 2, 3, 4, 4]]
+    ways = np.concatenate([np.zeros((1, 3)), np.cumsum(form[O1_O2 : O4_O5 + 1], axis=0)])
+    meant = form[O1] + ways[[0, 1, 2, 3, 4, 4]]
     off = np.linalg.norm(np.cross(axes, points - meant), axis=1)
-    tilt = np.linalg.norm(axes - form[:6], axis=1)
+    tilt = np.linalg.norm(axes - form[H1 : H6 + 1], axis=1)
     reach = np.linalg.norm(np.diff([*meant[:5], tip], axis=0), axis=1).sum() + off.sum()
     return float((2.0 * off + 2.0 * tilt * reach).sum()), float(2.0 * tilt.sum())

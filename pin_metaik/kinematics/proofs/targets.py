@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from pin_metaik.compiled import Floats, inline, jit
-from pin_metaik.kinematics.branches import Numbers, Vector, dot, numbers_of
+from pin_metaik.kinematics.kernel.closed_form import Numbers, Vector, dot, numbers_of
 
 
 @inline
