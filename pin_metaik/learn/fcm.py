@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import Interrupted
-from pin_metaik.learn.arrays import Array, as_table
+from pin_metaik.learn.tables import as_table
 from pin_metaik.randomness import as_generator
 
 CHUNK = 2**16  # memberships held at a time: half a megabyte, which stays in the cache

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import wrapped
-from pin_metaik.learn.arrays import Array, as_table
 from pin_metaik.learn.network import Network
+from pin_metaik.learn.tables import as_table
 from pin_metaik.learn.trainers import Callback, Trainer, Training, train
 from pin_metaik.said import warn
 

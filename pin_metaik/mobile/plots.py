@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 import shapely
 
+from pin_metaik.arrays import Array
 from pin_metaik.errors import MissingExtra
 from pin_metaik.mobile.motion.result import TrajectoryPlan
 from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.paths.result import PathPlan
 from pin_metaik.mobile.world.border import rings
 from pin_metaik.mobile.world.scene import Scene
-from pin_metaik.optimize.space import Array
 
 # Okabe and Ito: told apart by every eye and in grey.
 BLUE, RED, GREEN, GREY, STONE = "#0072b2", "#d55e00", "#009e73", "#999999", "#c9c5bd"

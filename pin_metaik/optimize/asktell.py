@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.budget import Budget
 from pin_metaik.optimize.elite import Elite
 from pin_metaik.optimize.registry import make
 from pin_metaik.optimize.search import Metaheuristic, Search
 from pin_metaik.optimize.settings import few
-from pin_metaik.optimize.space import Array, Box
+from pin_metaik.optimize.space import Box
 from pin_metaik.randomness import as_generator
 
 

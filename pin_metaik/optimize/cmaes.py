@@ -9,10 +9,10 @@ from importlib.util import find_spec
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.errors import MissingExtra
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import positive, whole, within
-from pin_metaik.optimize.space import Array
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.optimize.settings import whole
-from pin_metaik.optimize.space import Array, Box
+from pin_metaik.optimize.space import Box
 
 
 def sphere(Z: Array) -> Array:

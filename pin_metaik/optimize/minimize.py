@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidBudget
 from pin_metaik.interrupts import Interrupted
 from pin_metaik.optimize.asktell import AskTell, Status
 from pin_metaik.optimize.budget import Budget
 from pin_metaik.optimize.search import Metaheuristic
-from pin_metaik.optimize.space import Array, Box
+from pin_metaik.optimize.space import Box
 
 
 @dataclass(frozen=True, eq=False)

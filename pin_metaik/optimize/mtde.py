@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arrays import Array
 from pin_metaik.optimize.pick import below, others
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import whole, within
-from pin_metaik.optimize.space import Array
 
 R, L, G = range(3)  # the trial-vector producers: representative, local random, global best history
 SHARES = {R: (0.6, 0.2, 0.2), L: (0.2, 0.6, 0.2), G: (0.4, 0.4, 0.2)}  # of the population, by winner (16, 17)

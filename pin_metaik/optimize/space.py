@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, instance
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidBounds
 from pin_metaik.optimize.settings import MANY, few
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)

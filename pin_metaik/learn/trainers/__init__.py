@@ -7,9 +7,9 @@ from time import perf_counter
 import numpy as np
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.interrupts import Interrupted
-from pin_metaik.learn.arrays import Array
 from pin_metaik.learn.network import Network
 from pin_metaik.learn.trainers.bfgs import BFGS
 from pin_metaik.learn.trainers.levenberg import LevenbergMarquardt

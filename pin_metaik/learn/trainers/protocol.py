@@ -8,7 +8,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from pin_metaik.learn.arrays import Array
+from pin_metaik.arrays import Array
 from pin_metaik.learn.network import Network
 
 Callback = Callable[[int, float], object]

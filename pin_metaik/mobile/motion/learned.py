@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.interrupts import wrapped
 from pin_metaik.learn import OutsideTraining, Regressor, Trainer, fit
-from pin_metaik.learn.arrays import Array
 from pin_metaik.mobile.motion.turn import lead_time
 from pin_metaik.mobile.motion.turn_data import coarse_grid, judging_points
 from pin_metaik.mobile.motion.turn_errors import TurnErrors, turn_errors

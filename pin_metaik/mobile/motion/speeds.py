@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.interrupts import wrapped
 from pin_metaik.mobile.motion import speed_kernels as kernels
 from pin_metaik.mobile.motion.route import Route
 from pin_metaik.optimize import AskTell, Box, Budget, Metaheuristic, Status, minimize
-from pin_metaik.optimize.space import Array
 
 COARSE, FINE = 101, 17  # speeds a corner, in the first round and in those that look closer
 SHRINK, SMALLEST = 0.45, 1e-9  # how much smaller a window becomes, and where it ends, of the cap

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry, InvalidSetting
 from pin_metaik.interrupts import wrapped
 from pin_metaik.mobile.motion.learned import LearnedCorners, LearnedTurn, learn_turn
@@ -25,7 +26,6 @@ from pin_metaik.mobile.world.polygons import read_obstacles
 from pin_metaik.optimize import AskTell, Budget, Metaheuristic
 from pin_metaik.optimize.de import DE
 from pin_metaik.optimize.settings import one_of, within
-from pin_metaik.optimize.space import Array
 
 SEARCH = DE(agents=30)  # with best/1/bin it stops early: up to 3 % too slow with nine corners
 SEARCH_BUDGET = Budget(evaluations=30 * 500)

@@ -11,9 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.interrupts import wrapped
 from pin_metaik.learn import Clusters, fuzzy_c_means
-from pin_metaik.learn.arrays import Array
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
 from pin_metaik.randomness import as_generator
 

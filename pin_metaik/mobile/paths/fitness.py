@@ -11,6 +11,7 @@ import shapely
 from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked, shown
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.mobile.paths import fitness_kernels as kernels
 from pin_metaik.mobile.world.border import rings
@@ -18,7 +19,6 @@ from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.growth import grow
 from pin_metaik.mobile.world.scene import Point
 from pin_metaik.optimize.settings import one_of, within
-from pin_metaik.optimize.space import Array
 
 Counts = NDArray[np.int64]
 

@@ -8,6 +8,7 @@ from time import perf_counter
 import numpy as np
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.interrupts import wrapped
 from pin_metaik.mobile.errors import NoPath
@@ -20,7 +21,6 @@ from pin_metaik.optimize import ALGORITHMS, AskTell, Budget, Metaheuristic, Resu
 from pin_metaik.optimize.ga import GA
 from pin_metaik.optimize.pso import PSO
 from pin_metaik.optimize.settings import whole
-from pin_metaik.optimize.space import Array
 
 EXACT = "exact"
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.paths.problem import PathProblem
-from pin_metaik.optimize.space import Array
 
 
 class PathStatus(StrEnum):

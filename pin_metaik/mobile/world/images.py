@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry, MissingExtra
-from pin_metaik.optimize.space import Array
 
 COMMENT = re.compile(rb"#[^\r\n]*")
 BETWEEN = rb"(?:\s|#[^\r\n]*[\r\n])+"

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.arguments import number
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidBounds
-from pin_metaik.optimize.space import Array, Box
+from pin_metaik.optimize.space import Box
 from pin_metaik.stewart.platform.geometry import Geometry
 from pin_metaik.stewart.platform.limits import Limits
 from pin_metaik.stewart.workspace.grid import Range, as_range

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.interrupts import wrapped
 from pin_metaik.optimize import AskTell, Budget, Result, Status, minimize
-from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.synthesis.fitness import UNUSABLE, Fitness, Score, task_of
 from pin_metaik.stewart.workspace.surveying import Watch

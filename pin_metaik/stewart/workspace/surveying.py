@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.interrupts import Interrupted
-from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kernels.loading import load_judging
 from pin_metaik.stewart.kinematics.conditioning import DEFAULT, Dexterity, best_length, measure
 from pin_metaik.stewart.kinematics.judging import arguments_of

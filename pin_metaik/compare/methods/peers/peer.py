@@ -9,15 +9,13 @@ from importlib.util import find_spec
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pin_metaik.arrays import Array
 from pin_metaik.compare.method import Answer
 from pin_metaik.compare.methods.peers.serial_arm import SerialArm
 from pin_metaik.errors import MissingExtra
 from pin_metaik.ik import IKProblem
 from pin_metaik.kinematics import Chain
-
-Array = NDArray[np.float64]
 
 TOLERANCE = 1e-5  # m, rad
 
