@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING, fields
 from importlib.resources import files
@@ -21,7 +19,9 @@ from pin_metaik.collision.numbers import three
 from pin_metaik.collision.obstacle import Obstacle
 from pin_metaik.collision.shapes import Box, Capsule, Cone, Cylinder, HalfSpace, Plane, Shape, Sphere
 from pin_metaik.errors import InvalidGeometry, UnknownName
+from pin_metaik.files import read_json
 from pin_metaik.kinematics.pose import rpy_matrix
+from pin_metaik.toml import read_toml
 
 
 class Kind(NamedTuple):
@@ -118,18 +118,9 @@ def _shipped() -> dict[str, Traversable]:
     return {entry.name.removesuffix(".toml"): entry for entry in folder.iterdir() if entry.name.endswith(".toml")}
 
 
-def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """A JSON object whose keys are all different, as TOML wants them."""
-    names = [name for name, _ in pairs]
-    twice = next((name for name in names if names.count(name) > 1), None)
-    if twice is not None:
-        raise ValueError(f"the key {twice!r} is there twice")
-    return dict(pairs)
-
-
-READERS: dict[str, Callable[[str], Any]] = {
-    ".toml": tomllib.loads,
-    ".json": lambda text: json.loads(text, object_pairs_hook=_once),
+READERS: dict[str, Callable[[Path | Traversable, type[InvalidGeometry]], Any]] = {
+    ".toml": read_toml,
+    ".json": read_json,
 }
 
 
@@ -137,18 +128,7 @@ def _read(path: Path | Traversable) -> Any:
     suffix = Path(path.name).suffix.lower()
     if suffix not in READERS:
         raise InvalidGeometry(f"cannot read the scene {path}: a scene is a .toml or a .json file")
-    try:
-        file = path.expanduser() if isinstance(path, Path) else path
-        text = file.read_text(encoding="utf-8-sig")
-    except (OSError, RuntimeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise InvalidGeometry(f"cannot read the scene {path}: {reason}") from None
-    except ValueError as error:
-        raise InvalidGeometry(f"{path} is not text: {error}") from None
-    try:
-        return READERS[suffix](text)
-    except (ValueError, RecursionError) as error:
-        raise InvalidGeometry(f"{path} is not {suffix[1:].upper()}: {error}") from None
+    return READERS[suffix](path, InvalidGeometry)
 
 
 def _obstacles(scene: Any, name: str, folder: Path) -> tuple[Obstacle, ...]:

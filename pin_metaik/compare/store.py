@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from pin_metaik.arguments import checked
-from pin_metaik.compare.reading import read_json
 from pin_metaik.compare.record import RECORD, Record
 from pin_metaik.compare.results import Results
 from pin_metaik.compare.trial import Trial
 from pin_metaik.errors import InvalidSetting, MissingExtra
+from pin_metaik.files import read_json
 
 ROWS, PARQUET = "rows.jsonl", "rows.parquet"
 
@@ -52,7 +52,7 @@ def read_record(folder: Path) -> Record:
     path = folder / RECORD
     if not path.exists():
         raise InvalidSetting(f"{folder} holds no comparison: make one with pin-metaik compare --out {folder}")
-    return Record.from_json(read_json(path), path)
+    return Record.from_json(read_json(path, InvalidSetting), path)
 
 
 def read_rows(folder: Path) -> list[Trial]:

@@ -10,8 +10,8 @@ import typer
 
 from pin_metaik import stewart
 from pin_metaik.cli.stewart.common import File, can_write, show_lines, words
-from pin_metaik.stewart.mechanism.units import LENGTHS
 from pin_metaik.stewart.show.report import describe
+from pin_metaik.units import LENGTHS
 
 
 def show(

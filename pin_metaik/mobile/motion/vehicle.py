@@ -8,7 +8,8 @@ from pathlib import Path
 
 from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting, UnknownName
-from pin_metaik.mobile.files import number, only, read_json
+from pin_metaik.files import known_keys, read_json
+from pin_metaik.mobile.files import number
 
 INCH = 0.0254  # m
 
@@ -86,6 +87,6 @@ def _read(path: Path) -> SynchroDrive:
     given = read_json(path, InvalidSetting)
     if not isinstance(given, dict):
         raise InvalidSetting(f"{path} is not a vehicle: expected an object with {', '.join(LIMITS)}")
-    only(given, ("name", *LIMITS), str(path), InvalidSetting)
+    known_keys(given, path, InvalidSetting, (), ("name", *LIMITS))
     limits = {key: number(given, key, str(path), InvalidSetting) for key in LIMITS if key in given}
     return replace(NOMAD_200, name=str(given.get("name", path.stem)), **limits)

@@ -17,7 +17,6 @@ from pin_metaik.optimize.settings import few
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.mechanism.ranges import SIDES, Ranges
 from pin_metaik.stewart.mechanism.task import DesignTask
-from pin_metaik.stewart.mechanism.units import ANGLES
 from pin_metaik.stewart.platform.geometry import FEWEST_LEGS, MOST_LEGS, Geometry
 from pin_metaik.stewart.platform.layouts import NAMED, standard_geometry, tangential_servos
 from pin_metaik.stewart.platform.limits import LegLimits, Limits, ServoLimits
@@ -25,6 +24,7 @@ from pin_metaik.stewart.platform.servos import each
 from pin_metaik.stewart.synthesis.design import Designed, design
 from pin_metaik.stewart.synthesis.fitness import task_of
 from pin_metaik.stewart.workspace.surveying import Watch
+from pin_metaik.units import ANGLES
 
 ASIDE = radians(25.0)  # how far a joint may stand from where its type has it
 NARROW, WIDE = 0.5, 1.5  # of the radii of a new mechanism: between these a design may change them
