@@ -18,8 +18,8 @@ from pin_metaik.compare.lock import locked
 from pin_metaik.compare.papers import PAPERS, Options, Reproduction
 from pin_metaik.compare.report.show import show
 from pin_metaik.compare.report.write import need_figures, write
-from pin_metaik.errors import UnknownName
 from pin_metaik.interrupts import kept
+from pin_metaik.lookup import lookup
 from pin_metaik.output import writable
 
 QUICK_RUNS = 3
@@ -40,15 +40,13 @@ def reproduce(
     rng: Annotated[int, typer.Option(min=0, help="Seed of everything random.")] = 0,
 ) -> None:
     """Run a paper's experiment again: its numbers and ours side by side. Ctrl-C keeps what is done."""
-    if name not in PAPERS:
-        raise UnknownName("paper", name, PAPERS)
+    paper = lookup("paper", name, PAPERS)
     if out is not None:
         if figures:
             need_figures()
         writable(out, folder=True)
         for before in out.glob(f"{name}*"):
             writable(before)
-    paper = PAPERS[name]
     options = Options(runs or (min(QUICK_RUNS, paper.runs) if quick else paper.runs), quick, long, rng)
     console = Console(width=None if sys.stdout.isatty() else WIDE)
     console.print(f"{paper.title}\n{paper.source}", markup=False, highlight=False)

@@ -21,6 +21,7 @@ from pin_metaik.collision.shapes import Box, Capsule, Cone, Cylinder, HalfSpace,
 from pin_metaik.errors import InvalidGeometry, UnknownName
 from pin_metaik.files import read_json
 from pin_metaik.kinematics.pose import rpy_matrix
+from pin_metaik.lookup import lookup
 from pin_metaik.toml import read_toml
 
 
@@ -108,9 +109,7 @@ def load_scene(source: str | Path) -> tuple[Obstacle, ...]:
     path = Path(source)
     if isinstance(source, Path) or path.suffix.lower() in READERS or len(path.parts) > 1:
         return _obstacles(_read(path), str(path), path.parent)
-    if source not in _shipped():
-        raise UnknownName("scene", source, _shipped())
-    return _obstacles(_read(_shipped()[source]), source, Path())
+    return _obstacles(_read(lookup("scene", source, _shipped())), source, Path())
 
 
 def _shipped() -> dict[str, Traversable]:
@@ -144,9 +143,7 @@ def _obstacle(entry: Mapping[str, Any], where: str, folder: Path) -> Obstacle:
         if not isinstance(entry.get(key), str):
             raise InvalidGeometry(f"{where}: its {key} is a text, got {entry.get(key)!r}")
     where = f"{where}, {entry['name']!r}"
-    if entry["shape"] not in KINDS:
-        raise UnknownName(f"shape of {where},", entry["shape"], KINDS)
-    kind = KINDS[entry["shape"]]
+    kind = lookup(f"shape of {where},", entry["shape"], KINDS)
     _check_keys(entry, (*KEYS, *kind.known), f"{where}, a {entry['shape']},")
     lacking = [key for key in kind.needed if key not in entry]
     if lacking:

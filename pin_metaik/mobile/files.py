@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from pin_metaik.errors import MissingExtra
 from pin_metaik.files import Error, read_text
+from pin_metaik.lookup import need
 
 
 def read_yaml(path: Path, error: Error) -> Any:
@@ -21,8 +20,7 @@ def read_yaml(path: Path, error: Error) -> Any:
     Raises:
         MissingExtra: PyYAML is not installed.
     """
-    if find_spec("yaml") is None:
-        raise MissingExtra(f"reading {path}", "mobile")
+    need(f"reading {path}", "mobile", "yaml")
     import yaml
 
     text = read_text(path, error)

@@ -8,7 +8,7 @@ import numpy as np
 
 from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
-from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import Interrupted
 from pin_metaik.learn.network import Network
 from pin_metaik.learn.trainers.bfgs import BFGS
@@ -17,6 +17,7 @@ from pin_metaik.learn.trainers.minpack import Minpack
 from pin_metaik.learn.trainers.protocol import Callback, Finished, Record, Task, Trainer, Training
 from pin_metaik.learn.trainers.rprop import Rprop
 from pin_metaik.learn.trainers.scg import SCG
+from pin_metaik.lookup import lookup
 
 TRAINERS: dict[str, type[Trainer]] = {
     "lm": LevenbergMarquardt,
@@ -36,9 +37,7 @@ def make_trainer(trainer: str | Trainer) -> Trainer:
     """
     if not isinstance(trainer, str):
         return trainer
-    if trainer not in TRAINERS:
-        raise UnknownName("trainer", trainer, TRAINERS)
-    return TRAINERS[trainer]()
+    return lookup("trainer", trainer, TRAINERS)()
 
 
 @checked

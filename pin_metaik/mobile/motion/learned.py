@@ -15,9 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
-from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import wrapped
 from pin_metaik.learn import OutsideTraining, Regressor, Trainer, fit
+from pin_metaik.lookup import lookup
 from pin_metaik.mobile.motion.turn import lead_time
 from pin_metaik.mobile.motion.turn_data import coarse_grid, judging_points
 from pin_metaik.mobile.motion.turn_errors import TurnErrors, turn_errors
@@ -229,13 +230,11 @@ def learn_turn(
         UnknownName: No such design or trainer.
         InvalidSetting: Too few points.
     """
-    if design not in DESIGNS:
-        raise UnknownName("design", design, DESIGNS)
+    use = lookup("design", design, DESIGNS)
     points = coarse_grid(vehicle) if points is None else array("points", points, "n", 2)
     if design == "log":
         points = points[points[:, 1] >= np.radians(0.5)]
     v, theta = points.T
-    use = DESIGNS[design]
     alpha = v * lead_time(theta, vehicle)
     angles, speeds = (float(theta.min()), float(theta.max())), (float(v.min()), float(v.max()))
     return wrapped(

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pin_metaik.arguments import checked
-from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.files import known_keys, read_json
+from pin_metaik.lookup import lookup
 from pin_metaik.mobile.files import number
 
 INCH = 0.0254  # m
@@ -78,9 +79,7 @@ def load_vehicle(source: str | Path) -> SynchroDrive:
     """
     if Path(source).suffix.lower() == ".json":
         return _read(Path(source))
-    if source not in VEHICLES:
-        raise UnknownName("vehicle", str(source), VEHICLES)
-    return VEHICLES[str(source)]
+    return lookup("vehicle", str(source), VEHICLES)
 
 
 def _read(path: Path) -> SynchroDrive:

@@ -88,8 +88,8 @@ from pin_metaik.errors import (
     InvalidSetting,
     InvalidTable,
     MetaIKError,
-    UnknownName,
 )
+from pin_metaik.lookup import lookup
 from pin_metaik.optimize import ALGORITHMS, Metaheuristic
 from pin_metaik.stewart.kinematics.conditioning import Dexterity
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
@@ -281,9 +281,7 @@ def _spans(table: Table, key: str, length: Unit, angle: Unit) -> Any:
 
 
 def _algorithm(name: str, settings: object, path: str) -> Metaheuristic:
-    if name not in ALGORITHMS:
-        raise UnknownName("metaheuristic", name, ALGORITHMS)
-    kind = ALGORITHMS[name]
+    kind = lookup("metaheuristic", name, ALGORITHMS)
     assert is_dataclass(kind)
     table = Table(settings, f"{path}: design.settings", (), tuple(field.name for field in fields(kind)))
     values = {key: float(value) if isinstance(value, Decimal) else value for key, value in table.content.items()}
