@@ -465,6 +465,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.Limits.one_turn": dict,
     "mik.Limits.clip": lambda: {"x": np.array(X6)},
     "mik.Limits.nearest_turns": lambda: {"x": np.array(X6), "x0": np.array(X6)},
+    "mik.Limits.way": lambda: {"a": np.array(X6), "b": np.array(X6)},
     "mik.Limits.contains": lambda: {"x": np.array(X6), "tolerance": 0.0},
     "mik.Limits.replace": lambda: {"limits": {"elbow_joint": (-1.0, 1.0)}},
     "mik.Search": lambda: {

@@ -86,14 +86,6 @@ class Attempt:
         return np.array([answer.x for answer in self.answers])
 
 
-def travel(chain: Chain, a: Array, b: Array) -> Array:
-    """How far the joints move from a to b (..., n); a continuous one takes the shorter way round."""
-    step = b - a
-    periodic = chain.limits.periodic
-    step[..., periodic] = (step[..., periodic] + np.pi) % (2.0 * np.pi) - np.pi
-    return step
-
-
 def whole_arm(robot: Robot, rng: np.random.Generator) -> Chain:
     """The joints that move the robot's default frame, as they are."""
     return Chain(robot.model, robot.frame)

@@ -113,7 +113,7 @@ def solve_ik_path(
     x, breaks = _best_way(chain, layers, bound, None if q0 is None else chain.x(base))
     q = chain.q(x, base)
     success = np.array([problem.accepts(one) for problem, one in zip(problems, q, strict=True)])
-    steps = np.abs(_steps(chain, x[:-1], x[1:])).max(axis=1, initial=0.0)
+    steps = np.abs(chain.limits.way(x[:-1], x[1:])).max(axis=1, initial=0.0)
     steps[[i - 1 for i in breaks]] = 0.0
     return IKPath(q, success, tuple(breaks), float(steps.max(initial=0.0)), perf_counter() - began, chain)
 
@@ -164,14 +164,6 @@ def _widened(
     return found[:known]
 
 
-def _steps(chain: Chain, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Joint steps from a to b (..., n); a continuous joint takes the shorter way round."""
-    step = b - a
-    periodic = chain.limits.periodic
-    step[..., periodic] -= 2.0 * np.pi * np.round(step[..., periodic] / (2.0 * np.pi))
-    return step
-
-
 def _best_way(
     chain: Chain, layers: list[NDArray[np.float64]], bound: NDArray[np.float64], x0: NDArray[np.float64] | None
 ) -> tuple[NDArray[np.float64], list[int]]:
@@ -179,9 +171,9 @@ def _best_way(
 
     A pose without a solution keeps the joints where the pose before it had them.
     """
-    jump = 1e6  # dearer than any way
+    jump = 1e6  # more than any path costs
     here = layers[0]
-    costs = np.zeros(len(here)) if x0 is None else np.linalg.norm(_steps(chain, x0, here), axis=1)
+    costs = np.zeros(len(here)) if x0 is None else np.linalg.norm(chain.limits.way(x0, here), axis=1)
     trail: list[tuple[int, NDArray[np.int64]]] = [(0, np.zeros(0, np.int64))] if len(here) else []
     for i in range(1, len(layers)):
         if not len(layers[i]):
@@ -190,7 +182,7 @@ def _best_way(
             here, costs = layers[i], np.zeros(len(layers[i]))
             trail.append((i, np.zeros(0, np.int64)))
             continue
-        step = _steps(chain, here[:, None], layers[i][None])  # (a, b, n)
+        step = chain.limits.way(here[:, None], layers[i][None])  # (a, b, n)
         broken = (np.abs(step) > bound).any(axis=2)
         total = costs[:, None] + np.linalg.norm(step, axis=2) + jump * broken
         before = total.argmin(axis=0)
@@ -218,5 +210,5 @@ def _traced(
     last = solved[min(solved)] if solved else last
     for i in range(len(layers)):
         last = x[i] = solved.get(i, last)
-    steps = _steps(chain, x[:-1], x[1:])
+    steps = chain.limits.way(x[:-1], x[1:])
     return x, [int(i) + 1 for i in np.flatnonzero((np.abs(steps) > bound).any(axis=1))]
