@@ -13,6 +13,7 @@ import typer
 from rich.console import Console
 
 from pin_metaik.cli.codes import INTERRUPTED
+from pin_metaik.cli.progress import progress_bar
 from pin_metaik.compare import papers
 from pin_metaik.compare.lock import locked
 from pin_metaik.compare.papers import PAPERS, Options, Reproduction
@@ -51,7 +52,8 @@ def reproduce(
     console = Console(width=None if sys.stdout.isatty() else WIDE)
     console.print(f"{paper.title}\n{paper.source}", markup=False, highlight=False)
     with nullcontext() if out is None else _alone_in(out):
-        again = kept(lambda: papers.reproduce(paper, options, Console(stderr=True)))
+        with progress_bar(name) as watch:
+            again = kept(lambda: papers.reproduce(paper, options, watch))
         show(again.sections, console)
         console.print(f"\n{again}", style="yellow" if again.partial else None, markup=False, highlight=False)
         if out is not None:

@@ -152,7 +152,7 @@ class IKProblem:
         return self.chain.reach(t, oriented).gap(self.targets[t].pose, *self.targets[t].allowance)
 
     def linearize(self, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Weighted residual r (m,) at coordinates x (n,), and what refiners descend along, J (n, m) with dr_i/dx_c in J[c, i].
+        """Weighted residual r (m,) at coordinates x (n,), and J (n, m) to descend along, dr_i/dx_c in J[c, i].
 
         Rows are the axes that ``rows`` lists: of the error T_target^-1 T_frame, in the target frame, its position p (m)
         and its rotation vector w = log(R) (rad), less the slack, times the weight. J is the derivative of r but for one

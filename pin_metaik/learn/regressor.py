@@ -14,8 +14,9 @@ from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import wrapped
 from pin_metaik.learn.network import Network
 from pin_metaik.learn.tables import as_table
-from pin_metaik.learn.trainers import Callback, Trainer, Training, train
+from pin_metaik.learn.trainers import Trainer, Training, train
 from pin_metaik.said import warn
+from pin_metaik.watching import Watch
 
 EDGE = 1e-9  # of the range; as far outside is still inside
 
@@ -118,7 +119,7 @@ def fit(
     trainer: str | Trainer = "lm",
     iterations: int = 1000,
     rng: int | np.random.Generator | None = 0,
-    callback: Callback | None = None,
+    watch: Watch | None = None,
 ) -> Regressor:
     """Fit a network to data; inputs and output are scaled to [-1, 1] and the mean squared error is minimised.
 
@@ -129,7 +130,7 @@ def fit(
         trainer: By name or as an object.
         iterations: At most; what one is depends on the trainer.
         rng: Seed or generator of the first weights.
-        callback: Called after every iteration with its number and the error.
+        watch: Called after every iteration with their number and the error; True ends the training.
 
     Raises:
         InvalidSetting: Data that do not fit together.
@@ -143,6 +144,6 @@ def fit(
     network, inputs, output = Network(X.shape[1], tuple(hidden)), Scale.of(X), Scale.of(Y)
     x, z, first = inputs.down(X), output.down(Y)[:, 0], network.initial(rng)
     return wrapped(
-        lambda: train(trainer, network, x, z, first, iterations, callback),
+        lambda: train(trainer, network, x, z, first, iterations, watch),
         lambda training: Regressor(network, training.w, inputs, output, training),
     )

@@ -32,12 +32,12 @@ def test_every_trainer_learns_and_repeats_itself(trainer):
 def test_ctrl_c_goes_through_with_the_best_weights_so_far(trainer):
     X, y = wave()
 
-    def stop(iteration, mse):
-        if iteration == 20:
+    def stop(at):
+        if at.done == 20:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt) as press:
-        fit(X, y, (5,), trainer, 500, callback=stop)
+        fit(X, y, (5,), trainer, 500, watch=stop)
     model = press.value.result
     assert model.training.interrupted
     assert model.training.iterations == 20

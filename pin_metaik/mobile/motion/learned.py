@@ -24,6 +24,7 @@ from pin_metaik.mobile.motion.turn_data import coarse_grid, judging_points
 from pin_metaik.mobile.motion.turn_errors import TurnErrors, turn_errors
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
 from pin_metaik.said import warn
+from pin_metaik.watching import Watch
 
 DesignName = Literal["paper", "log"]
 
@@ -211,7 +212,7 @@ def learn_turn(
     iterations: int = 300,
     points: Array | None = None,
     rng: int | np.random.Generator | None = 0,
-    callback: Callable[[int, float], object] | None = None,
+    watch: Watch | None = None,
 ) -> LearnedTurn:
     """Train a network on exact tangent lengths.
 
@@ -224,7 +225,7 @@ def learn_turn(
         points: Speeds and angles (n, 2) in m/s and rad to learn from; default: the paper's grid. ``log`` leaves out
             angles below half a degree, whose logarithms run away.
         rng: Seed or generator of the first weights.
-        callback: Called after every iteration.
+        watch: Called after every iteration with their number and the error; True ends it.
 
     Raises:
         UnknownName: No such design or trainer.
@@ -238,6 +239,6 @@ def learn_turn(
     alpha = v * lead_time(theta, vehicle)
     angles, speeds = (float(theta.min()), float(theta.max())), (float(v.min()), float(v.max()))
     return wrapped(
-        lambda: fit(use.inputs(v, theta), use.output(alpha), hidden, trainer, iterations, rng, callback),
+        lambda: fit(use.inputs(v, theta), use.output(alpha), hidden, trainer, iterations, rng, watch),
         lambda regressor: LearnedTurn(vehicle, design, regressor, angles, speeds),
     )

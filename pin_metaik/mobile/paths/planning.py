@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from time import perf_counter
 
 import numpy as np
@@ -17,10 +16,11 @@ from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.paths.problem import PathProblem
 from pin_metaik.mobile.paths.result import PathPlan, PathStatus
 from pin_metaik.mobile.world.scene import Scene
-from pin_metaik.optimize import ALGORITHMS, AskTell, Budget, Metaheuristic, Result, Status, make, minimize
+from pin_metaik.optimize import ALGORITHMS, Budget, Metaheuristic, Result, Status, make, minimize
 from pin_metaik.optimize.ga import GA
 from pin_metaik.optimize.pso import PSO
 from pin_metaik.optimize.settings import whole
+from pin_metaik.watching import Watch
 
 EXACT = "exact"
 
@@ -44,7 +44,7 @@ def plan_path(
     rng: int | np.random.Generator | None = 0,
     seeded: bool = False,
     trace: bool = False,
-    callback: Callable[[AskTell], bool | None] | None = None,
+    watch: Watch | None = None,
 ) -> PathPlan:
     """Plan a path.
 
@@ -60,7 +60,7 @@ def plan_path(
         seeded: Whether to start one individual at the shortest path: for a fitness that is not its length, or to see
             that the search can only be better than that.
         trace: Whether to keep the convergence.
-        callback: Called after every generation with the running search; returning True ends it.
+        watch: Called after every generation of the search with evaluations done and in all; True ends it.
 
     Returns:
         The plan: check ``plan.success``. A metaheuristic's best may go through an obstacle.
@@ -85,7 +85,7 @@ def plan_path(
     seeds = _seed(problem, via) if seeded else None
     box, name = problem.box(via), method if isinstance(method, str) else type(method).__name__
     return wrapped(
-        lambda: minimize(objective, box, algorithm, budget, rng, seeds=seeds, trace=trace, callback=callback),
+        lambda: minimize(objective, box, algorithm, budget, rng, seeds=seeds, trace=trace, watch=watch),
         lambda found: _searched(problem, found, name, seed),
     )
 

@@ -42,7 +42,7 @@ class PathPlan:
         seconds: Time taken, in s: of a search without the optimum that the gap is measured by; of the exact planner
             without what the problem had worked out already.
         seed: Of every random choice; None if a generator was handed in.
-        interrupted: Whether its search was stopped, by Ctrl-C or its callback.
+        interrupted: Whether its search was stopped, by Ctrl-C or its watch.
         problem: What was asked.
         trace: Evaluations and best cost after each generation (g, 2), when asked for.
     """

@@ -12,9 +12,10 @@ from pin_metaik.stewart.mechanism.units import Coordinate
 from pin_metaik.stewart.platform.geometry import Geometry
 from pin_metaik.stewart.platform.limits import Limits, fit
 from pin_metaik.stewart.workspace.grid import Grid
-from pin_metaik.stewart.workspace.surveying import Watch, survey
+from pin_metaik.stewart.workspace.surveying import survey
 from pin_metaik.stewart.workspace.workspace import Workspace
 from pin_metaik.units import ANGLES, LENGTHS
+from pin_metaik.watching import Watch
 
 
 @checked

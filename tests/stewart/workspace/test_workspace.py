@@ -193,8 +193,8 @@ def test_lci_counts_only_poses_above_the_threshold():
 def test_ctrl_c_goes_through_with_what_was_seen():
     mechanism = reference()
 
-    def press(done, total):
-        if done > total / 2:
+    def press(at):
+        if at.done > at.total / 2:
             raise KeyboardInterrupt
 
     grid = Grid((100, 60, 60))
@@ -212,7 +212,7 @@ def test_ctrl_c_goes_through_with_what_was_seen():
 def test_ctrl_c_before_anything_was_seen_goes_through():
     mechanism = reference()
 
-    def press(done, total):
+    def press(at):
         raise KeyboardInterrupt
 
     grid = Grid((100, 60, 60), x=(-0.5, -0.4), y=(0, 0.1), z=(0.3, 0.4))
@@ -220,11 +220,22 @@ def test_ctrl_c_before_anything_was_seen_goes_through():
         survey(mechanism.geometry, mechanism.limits, grid, watch=press)
 
 
+def test_a_watch_ends_a_survey_that_says_so_whether_or_not_anything_was_reached():
+    mechanism = reference()
+    part = survey(mechanism.geometry, mechanism.limits, Grid((100, 60, 60)), watch=lambda at: at.done > at.total / 2)
+    assert part.volume > 0
+    assert not part.complete
+    nowhere = Grid((100, 60, 60), x=(-0.5, -0.4), y=(0, 0.1), z=(0.3, 0.4))
+    none = survey(mechanism.geometry, mechanism.limits, nowhere, watch=lambda at: True)
+    assert not none.reached.any()
+    assert not none.complete
+
+
 def test_the_watch_hears_of_every_pose():
     heard = []
     mechanism = reference()
     survey(
-        mechanism.geometry, mechanism.limits, Grid((100, 60, 60)), watch=lambda done, total: heard.append((done, total))
+        mechanism.geometry, mechanism.limits, Grid((100, 60, 60)), watch=lambda at: heard.append((at.done, at.total))
     )
     assert heard[-1] == (360_000, 360_000)
     assert len(heard) > 1
