@@ -517,6 +517,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "budget": FEW,
         "world": None,
         "rng": 0,
+        "watch": None,
     },
     "mik.solve_ik_batch": lambda: {
         "chain": chain(),
@@ -526,6 +527,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "world": None,
         "workers": 1,
         "rng": 0,
+        "watch": None,
     },
     "mik.solve_ik_path": lambda: {
         "chain": arm(),
@@ -534,6 +536,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "max_step": 0.3,
         "world": None,
         "rng": 0,
+        "watch": None,
     },
     # collision
     "collision.Box": lambda: {"size": (1.0, 1.0, 1.0)},

@@ -20,6 +20,7 @@ from pin_metaik.ik.starts import drawn
 from pin_metaik.kinematics.proofs.boxes import Boxes
 from pin_metaik.optimize import Budget
 from pin_metaik.randomness import Rng
+from pin_metaik.watching import Progress, Stopped, Watch, tell
 
 BATCH = 128  # starts between two looks at what came of them
 MIDDLE = 5000  # evaluations for a solution in the middle of loose tolerances before all of them is aimed at
@@ -33,18 +34,21 @@ TURN = 2.0 * np.pi
 
 
 def collect(
-    problem: IKProblem, x0: Array, rng: Rng, *, limit: int, apart: float, budget: Budget
+    problem: IKProblem, x0: Array, rng: Rng, *, limit: int, apart: float, budget: Budget, watch: Watch | None = None
 ) -> tuple[IKProblem, Array, Proof | None, int]:
     """Distinct solutions (s, n), what proves that they are all, and the evaluations spent.
 
     They are in the middle of the tolerances; if nothing is, anywhere in them, which is returned as the problem first.
+
+    Raises:
+        Stopped: The watch says so; its ``result`` is the solutions so far and the evaluations spent.
     """
-    middle = Collection(problem, x0, rng, limit, apart, budget)
+    middle = Collection(problem, x0, rng, limit, apart, budget, watch)
     middle.run()
     ledger = middle.ledger
     if middle.known or ledger.over():
         return problem, middle.solutions, middle.complete, ledger.spent
-    rest = Collection(problem.whole, x0, rng, limit, apart, budget, ledger.spent)
+    rest = Collection(problem.whole, x0, rng, limit, apart, budget, watch, ledger.spent)
     rest.run()
     return problem.whole, rest.solutions, rest.complete, rest.ledger.spent
 
@@ -60,14 +64,22 @@ class Collection:
     """
 
     def __init__(
-        self, problem: IKProblem, x0: Array, rng: Rng, limit: int, apart: float, budget: Budget, spent: int = 0
+        self,
+        problem: IKProblem,
+        x0: Array,
+        rng: Rng,
+        limit: int,
+        apart: float,
+        budget: Budget,
+        watch: Watch | None = None,
+        spent: int = 0,
     ) -> None:
         """Begin with no solution; x0 (n,) is where to start from, and what its joints keep where they do not matter."""
         self.problem, self.ledger = problem, Ledger(problem, budget, perf_counter(), x0)
         self.ledger.spent = spent
         self.known = 0
         self.complete: Proof | None = None
-        self._x0, self._rng, self._apart = x0, rng, apart
+        self._x0, self._rng, self._apart, self._watch = x0, rng, apart, watch
         self._found = np.empty((limit, problem.chain.n))
         self._vain = 0
 
@@ -128,6 +140,8 @@ class Collection:
             starts = drawn(problem.chain, self._rng, index, BATCH)
             if index == 0:
                 starts = np.concatenate([self._x0[None], problem.near(BATCH), starts])
+            if index:
+                self._tell(total)
             enough = VAIN + VAIN_EACH * self.known
             self._descend(starts, enough - self._vain)
             if not self.known:
@@ -147,6 +161,17 @@ class Collection:
                 or hopeless
             ):
                 return
+
+    def _tell(self, total: int) -> None:
+        """Say how many of the evaluations are spent.
+
+        Raises:
+            Stopped: The watch says so; its ``result`` is the solutions so far and the evaluations spent.
+        """
+        try:
+            tell(self._watch, Progress(self.ledger.spent, total))
+        except Stopped:
+            raise Stopped((self.solutions, self.ledger.spent)) from None
 
     def _keep_exact(self) -> None:
         """Take solutions to the pose itself; what comes to the same was within the tolerances, near a singularity."""
