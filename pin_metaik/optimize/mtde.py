@@ -87,8 +87,7 @@ class MTDE:
                 better = np.flatnonzero(wins)
                 if len(better):
                     mu_f = lehmer_mean(F[better, 0], f[better] - costs[better], mu_f)
-                    archive[(archived + np.arange(len(better))) % N] = X[better]
-                    archived += len(better)
+                    archived = remember(archive, archived, X[better])
                     X[better], f[better] = U[better], costs[better]
                     if f.min() < best:
                         history, best = np.concatenate((X[[f.argmin()]], history[: N - 1])), f.min()
@@ -100,6 +99,12 @@ def deal(count: int, winner: int) -> tuple[slice, slice, slice]:
     share_R, share_L, _ = SHARES[winner]
     end_R, end_L = round(share_R * count), round((share_R + share_L) * count)
     return slice(0, end_R), slice(end_R, end_L), slice(end_L, count)
+
+
+def remember(archive: Array, archived: int, losers: Array) -> int:
+    """Write losers (k, n) over the oldest of the archive (N, n), a ring; returns how many there have been in all."""
+    archive[(archived + np.arange(len(losers))) % len(archive)] = losers
+    return archived + len(losers)
 
 
 def representative(x: Array, f: Array, F: Array, x_Upop: Array, a1: float) -> Array:
