@@ -59,7 +59,7 @@ def fuzzy_c_means(
         m: Fuzziness, above 1.
         iterations: At most.
         tolerance: Ends when no centre moved further than this share of the data's widest column.
-        rng: Seed or generator.
+        rng: Seed or generator; ``None`` is a fixed seed.
         start: Centres (c, d) to begin at instead, e.g. to go on with a run that was cut short.
         watch: Called after every iteration with their number and J; True ends the search.
 

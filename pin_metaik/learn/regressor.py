@@ -129,7 +129,7 @@ def fit(
         hidden: Neurons of each hidden layer.
         trainer: By name or as an object.
         iterations: At most; what one is depends on the trainer.
-        rng: Seed or generator of the first weights.
+        rng: Seed or generator of the first weights; ``None`` is a fixed seed.
         watch: Called after every iteration with their number and the error; True ends the training.
 
     Raises:

@@ -44,7 +44,7 @@ class AskTell:
     Args:
         box: Where to search.
         algorithm: A name of the registry or an object with a `search` method.
-        rng: Seed or generator: the same seed gives the same answer bit for bit.
+        rng: Seed or generator: the same seed gives the same answer bit for bit; ``None`` is a fixed seed.
         seeds: Points to start from (s, n) or (n,), clipped to the box. An algorithm uses as many as it has agents.
         budget: When to stop. Without one it never does, and schedules that follow the budget stay at their beginning.
         keep: How many of the best points to remember in `elite`.

@@ -68,6 +68,7 @@ def minimize(
         algorithm: A name of the registry or an object with a `search` method.
         budget: When to stop; needs `evaluations` or `seconds`.
         rng: Seed or generator: the same seed gives the same answer bit for bit, unless the budget is in seconds.
+            ``None`` is a fixed seed.
         seeds: Points to start from (s, n) or (n,), clipped to the box. An algorithm uses as many as it has agents.
         trace: Whether to record the best cost after every generation.
         watch: Called after every generation with evaluations done and in all, and the best cost; True ends it as

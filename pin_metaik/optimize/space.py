@@ -15,7 +15,9 @@ from pin_metaik.optimize.settings import MANY, few
 
 @dataclass(frozen=True, eq=False, init=False)
 class Box:
-    """The points ``lower <= x <= upper``, coordinate by coordinate.
+    """The box of a search: the points ``lower <= x <= upper``, coordinate by coordinate.
+
+    It has any number of dimensions and is nothing solid; that is ``collision.Box``.
 
     A coordinate with ``lower == upper`` is fixed; every algorithm copes with that.
 

@@ -224,7 +224,7 @@ def learn_turn(
         iterations: At most. Plans end millimetres off the goal after 300, tenths of one after 4,000.
         points: Speeds and angles (n, 2) in m/s and rad to learn from; default: the paper's grid. ``log`` leaves out
             angles below half a degree, whose logarithms run away.
-        rng: Seed or generator of the first weights.
+        rng: Seed or generator of the first weights; ``None`` is a fixed seed.
         watch: Called after every iteration with their number and the error; True ends it.
 
     Raises:

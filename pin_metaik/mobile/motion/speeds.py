@@ -103,7 +103,7 @@ def searched_speeds(
         route: The route.
         algorithm: By name or as an object.
         budget: What it may spend; an evaluation is one choice of all speeds.
-        rng: Seed or generator.
+        rng: Seed or generator; ``None`` is a fixed seed.
         tangents: Tangent lengths (k, n) at speeds V (k, n), if not the true ones.
         watch: Called after every generation of the search with evaluations done and in all; True ends it.
         lower: Speeds below this are a stop.

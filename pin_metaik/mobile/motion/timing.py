@@ -25,6 +25,7 @@ from pin_metaik.mobile.world.polygons import read_obstacles
 from pin_metaik.optimize import Budget, Metaheuristic
 from pin_metaik.optimize.de import DE
 from pin_metaik.optimize.settings import one_of, within
+from pin_metaik.randomness import repeatable
 from pin_metaik.watching import Watch
 
 SEARCH = DE(agents=30)  # with best/1/bin it stops early: up to 3 % too slow with nine corners
@@ -59,7 +60,7 @@ def plan_trajectory(
         radius: Distance of the robot's centre from obstacles, in m; default: the robot's radius.
         algorithm: What searches, for ``de`` and ``ann``.
         budget: What it may spend.
-        rng: Seed or generator.
+        rng: Seed or generator; ``None`` is a fixed seed.
         model: The network for ``ann``; default: a new one, learned in a second.
         watch: Called after every generation of the search with evaluations done and in all; True ends it.
 
@@ -93,7 +94,7 @@ def plan_trajectory(
             radius=keep,
             evaluations=speeds.evaluations,
             seconds=took,
-            seed=int(rng) if isinstance(rng, (int, np.integer)) else None,
+            seed=repeatable(rng),
             interrupted=speeds.interrupted,
             learned=None if turns is None else turns.report(speeds.v),
         )

@@ -51,7 +51,7 @@ def clustered_points(
 
     Args:
         vehicle: The robot.
-        rng: Seed or generator.
+        rng: Seed or generator; ``None`` is a fixed seed.
         iterations: At most; after 150 the centres still move a little, and take half a minute.
         watch: Called after every iteration with their number and the error; True ends it.
         clusters: How many.

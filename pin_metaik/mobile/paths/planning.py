@@ -20,6 +20,7 @@ from pin_metaik.optimize import ALGORITHMS, Budget, Metaheuristic, Result, Statu
 from pin_metaik.optimize.ga import GA
 from pin_metaik.optimize.pso import PSO
 from pin_metaik.optimize.settings import whole
+from pin_metaik.randomness import repeatable
 from pin_metaik.watching import Watch
 
 EXACT = "exact"
@@ -56,7 +57,7 @@ def plan_path(
         fitness: What metaheuristics minimise: ``"exact"``, ``"paper"`` or an object.
         via: Via points. With fewer than the shortest path has corners it is out of reach.
         budget: What a metaheuristic may spend; an evaluation is one path.
-        rng: Seed or generator.
+        rng: Seed or generator; ``None`` is a fixed seed.
         seeded: Whether to start one individual at the shortest path: for a fitness that is not its length, or to see
             that the search can only be better than that.
         trace: Whether to keep the convergence.
@@ -74,7 +75,7 @@ def plan_path(
     """
     if isinstance(problem, Scene):
         problem = PathProblem.of(problem)
-    seed = int(rng) if isinstance(rng, (int, np.integer)) else None
+    seed = repeatable(rng)
     if method == EXACT:
         began = perf_counter()
         path = problem.optimum
