@@ -465,6 +465,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.Limits.one_turn": dict,
     "mik.Limits.clip": lambda: {"x": np.array(X6)},
     "mik.Limits.nearest_turns": lambda: {"x": np.array(X6), "x0": np.array(X6)},
+    "mik.Limits.way": lambda: {"a": np.array(X6), "b": np.array(X6)},
     "mik.Limits.contains": lambda: {"x": np.array(X6), "tolerance": 0.0},
     "mik.Limits.replace": lambda: {"limits": {"elbow_joint": (-1.0, 1.0)}},
     "mik.Search": lambda: {
@@ -495,7 +496,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "rng": 0,
         "seeds": [0.5],
         "trace": True,
-        "callback": None,
+        "watch": None,
         "keep": 2,
     },
     "mik.robot_names": dict,
@@ -516,6 +517,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "budget": FEW,
         "world": None,
         "rng": 0,
+        "watch": None,
     },
     "mik.solve_ik_batch": lambda: {
         "chain": chain(),
@@ -525,6 +527,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "world": None,
         "workers": 1,
         "rng": 0,
+        "watch": None,
     },
     "mik.solve_ik_path": lambda: {
         "chain": arm(),
@@ -533,6 +536,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "max_step": 0.3,
         "world": None,
         "rng": 0,
+        "watch": None,
     },
     # collision
     "collision.Box": lambda: {"size": (1.0, 1.0, 1.0)},
@@ -590,7 +594,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "trainer": "lm",
         "iterations": 3,
         "rng": 0,
-        "callback": None,
+        "watch": None,
     },
     "learn.fuzzy_c_means": lambda: {
         "Z": data()[0],
@@ -600,7 +604,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "tolerance": 1e-6,
         "rng": 0,
         "start": [[0.0, 0.0], [1.0, 1.0]],
-        "callback": None,
+        "watch": None,
     },
     "learn.make_trainer": lambda: {"trainer": "lm"},
     "learn.memberships": lambda: {"Z": data()[0], "centres": [[0.0, 0.0], [1.0, 1.0]], "m": 2.0},
@@ -611,7 +615,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "y": data()[1],
         "w": np.full(9, 0.1),
         "iterations": 3,
-        "callback": None,
+        "watch": None,
     },
     # robots
     "robots.DHRow": lambda: {
@@ -874,7 +878,6 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "unit": "mm",
     },
     "stewart.pose_at": lambda: {"xyz": (0.0, 0.0, 0.2), "rpy": (0.0, 0.0, 0.0)},
-    "stewart.progress_bar": lambda: {"label": "x", "console": None},
     "stewart.read_mechanism": lambda: {"path": stewart.save_mechanism(mechanism(), "saved.toml")},
     "stewart.read_trajectory": lambda: {
         "path": written("way.csv", "time,x,y,z\n0,0,0,1\n1,0,0,2\n"),
@@ -1004,7 +1007,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "iterations": 2,
         "points": np.column_stack((np.linspace(0.1, 1.0, 30), np.linspace(0.1, 3.0, 30))),
         "rng": 0,
-        "callback": None,
+        "watch": None,
     },
     "mobile.load_scene": lambda: {
         "source": saved_grid(),
@@ -1027,7 +1030,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "rng": 0,
         "seeded": False,
         "trace": False,
-        "callback": None,
+        "watch": None,
     },
     "mobile.plan_trajectory": lambda: {
         "path": path(),
@@ -1039,7 +1042,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "budget": FEW,
         "rng": 0,
         "model": None,
-        "callback": None,
+        "watch": None,
     },
     "mobile.random_scene": lambda: {
         "obstacles": 3,
@@ -1114,7 +1117,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "backend": "loky",
         "scheduler": None,
         "command": "c",
-        "console": None,
+        "watch": None,
     },
     "compare.read_results": lambda: {"folder": folder()},
     "compare.replay": lambda: {"folder": folder(), "name": "ur5/random/0/lm/0"},

@@ -32,7 +32,7 @@ LONGEST = 60  # characters of a value in a message
 COUNTS = ("no", "one", "two", "three", "four", "five", "six")
 
 MAKING = {  # what to write where one of these is asked for
-    "Box": "Box(lower, upper)",
+    "Box": "mik.Box(lower, upper), the box of a search",
     "Budget": "mik.Budget(evaluations=2000)",
     "Chain": "mik.Chain(robot, robot.frame)",
     "CollisionWorld": "mik.CollisionWorld(robot, obstacles)",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copyreg
 import json
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from difflib import get_close_matches
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
@@ -17,6 +17,12 @@ LONGEST = 80  # characters of a name in a message
 def shortened(text: str) -> str:
     """The beginning of a text that is too long for a message, e.g. a whole file given as a name."""
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}..."
+
+
+def meant(name: str, known: Collection[str]) -> str:
+    """The end of a message about a name that is not known: the one that was perhaps meant, or those there are."""
+    near = get_close_matches(name, known, n=1)
+    return f"did you mean {near[0]!r}?" if near else f"known: {', '.join(known) or 'none'}"
 
 
 class MetaIKError(ValueError):

@@ -11,17 +11,17 @@ from pin_metaik.errors import InvalidSetting
 Rng: TypeAlias = int | np.random.Generator | None
 
 DEFAULT_SEED = 0
-"""What ``rng=None`` stands for in inverse kinematics: the same call gives the same answer."""
+"""What ``rng=None`` stands for everywhere: the same call gives the same answer."""
 
 
 def as_generator(rng: Rng | tuple[int, ...]) -> np.random.Generator:
-    """The generator itself, or one seeded with a number or numbers; with ``None`` from the operating system.
+    """The generator itself, or one seeded with a number or numbers; ``None`` is ``DEFAULT_SEED``.
 
     Raises:
         InvalidSetting: If it is neither.
     """
     try:
-        return np.random.default_rng(rng)
+        return np.random.default_rng(DEFAULT_SEED if rng is None else rng)
     except (TypeError, ValueError):
         raise _no_rng(rng[0] if isinstance(rng, tuple) else rng) from None
 
@@ -41,6 +41,11 @@ def as_seed(rng: Rng) -> int | None:
     if isinstance(rng, (int, np.integer)) and rng >= 0:
         return int(rng)
     raise _no_rng(rng)
+
+
+def repeatable(rng: Rng) -> int | None:
+    """The seed that gives the same numbers again; None of a generator, which is somewhere in its own."""
+    return None if isinstance(rng, np.random.Generator) else int(DEFAULT_SEED if rng is None else rng)
 
 
 def _no_rng(given: object) -> InvalidSetting:

@@ -4,19 +4,37 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 import pin_metaik as mik
+from pin_metaik import learn, mobile
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.randomness import as_generator, as_seed
 from tests.robots_under_test import chain_of
 
 BOX = mik.Box([-1.0] * 2, [1.0] * 2)
+FEW = mik.Budget(evaluations=200)
 
 
 def test_a_generator_is_kept_and_a_seed_gives_the_same_numbers() -> None:
     mine = np.random.default_rng(3)
     assert as_generator(mine) is mine
     assert as_generator(3).random() == as_generator(np.int64(3)).random()
+
+
+@pytest.mark.parametrize("rng", [None, 0], ids=["None", "the fixed seed"])
+def test_none_is_one_fixed_seed_in_the_whole_house(rng: int | None) -> None:
+    found = mik.minimize(half, BOX, "de", FEW, rng)
+    assert_array_equal(found.x, mik.minimize(half, BOX, "de", FEW, 0).x)
+    points = np.random.default_rng(1).random((50, 2))
+    same = learn.fuzzy_c_means(points, 3, rng=0)
+    assert_array_equal(learn.fuzzy_c_means(points, 3, rng=rng).centres, same.centres)
+    assert mobile.plan_path(mobile.load_scene("ten_obstacles"), "de", budget=FEW, rng=rng).seed == 0
+
+
+def half(X: np.ndarray) -> np.ndarray:
+    """Costs (k,) of points (k, n)."""
+    return np.square(X).sum(axis=1)
 
 
 @pytest.mark.parametrize("bits", [np.random.PCG64, np.random.Philox, np.random.SFC64])

@@ -13,6 +13,7 @@ from rich.console import Console
 
 from pin_metaik.cli.codes import INTERRUPTED
 from pin_metaik.cli.many import split
+from pin_metaik.cli.progress import progress_bar
 from pin_metaik.compare import CASES, Suite, write_report
 from pin_metaik.compare import compare as run
 from pin_metaik.compare import replay as again
@@ -48,17 +49,11 @@ def compare(
     """Compare methods on hard cases at equal budgets. Ctrl-C loses nothing: the same command goes on."""
     sys.path.insert(0, "")  # module:object may be in the folder one is in
     suite = Suite(split(robot), split(cases), split(methods), targets, seeds, budget, rng)
-    outcome = kept(
-        lambda: run(
-            suite,
-            out,
-            jobs=jobs,
-            backend=backend.value,
-            scheduler=scheduler,
-            command=join(["pin-metaik", *sys.argv[1:]]),
-            console=Console(stderr=True),
+    command = join(["pin-metaik", *sys.argv[1:]])
+    with progress_bar("comparing") as watch:
+        outcome = kept(
+            lambda: run(suite, out, jobs=jobs, backend=backend.value, scheduler=scheduler, command=command, watch=watch)
         )
-    )
     console = Console(highlight=False)
     console.print(str(outcome), style="yellow" if outcome.partial else None, markup=False, soft_wrap=True)
     console.print(f"next: pin-metaik report {out}", markup=False, soft_wrap=True)

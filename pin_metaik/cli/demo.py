@@ -7,16 +7,12 @@ import pinocchio as pin
 from rich.console import Console
 from rich.table import Table
 
+from pin_metaik.compare.papers.rv7fl_setup import MM, TARGETS
 from pin_metaik.ik import IKSolver, Target, solve_ik
 from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Budget
 from pin_metaik.robots import load_robot
 
-RV7FL_CASES = {  # m; DEU FMD 26(78), 2024
-    "RV-7FL 1": (0.035, -0.905, 0.400),
-    "RV-7FL 2": (0.63925, -0.64594, 0.40079),
-    "RV-7FL 3": (-0.050, -0.905, 0.315),
-}
 POSES = {  # the frame's position (m) and roll, pitch, yaw (rad)
     "panda": ((0.4, 0.2, 0.5), (np.pi, 0.0, 0.3)),
     "ur5": ((0.3, 0.3, 0.4), (0.0, np.pi / 2, 0.0)),
@@ -43,9 +39,9 @@ def demo() -> None:
 
     arm = load_robot("rv7fl_paper")
     chain = Chain(arm.model, arm.frame)
-    for case, position in RV7FL_CASES.items():
+    for case, position in TARGETS.items():
         for method, solver in METHODS.items():
-            _add(table, case, method, chain, Target.at(position), solver)
+            _add(table, case.replace("Case", "RV-7FL"), method, chain, Target.at(np.array(position) / MM), solver)
         table.add_section()
     for name, (position, rpy) in POSES.items():
         robot = load_robot(name)

@@ -5,16 +5,15 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from pin_metaik.cli.codes import INTERRUPTED
+from pin_metaik.cli.progress import progress_bar
 from pin_metaik.cli.versions import versions
 from pin_metaik.compare.report.write import need_figures
 from pin_metaik.errors import InvalidSetting
@@ -101,7 +100,7 @@ def plan(
     world = _scene(scene, start, goal, keep + room, given)
     problem = mobile.PathProblem.of(world, keep, room, join)  # type: ignore[arg-type]  # it checks the join itself
     _warm_up()
-    with _progress("path") as tick:
+    with progress_bar("path") as watch:
         path = kept(
             lambda: mobile.plan_path(
                 problem,
@@ -111,7 +110,7 @@ def plan(
                 budget=Budget(evaluations=evaluations),
                 rng=rng,
                 seeded=seeded,
-                callback=tick,
+                watch=watch,
             )
         )
     plans = mobile.plan_alternatives(problem, paths) if paths > 1 else [path]
@@ -172,7 +171,7 @@ def _motions(
 
     model = mobile.learn_turn(robot) if method == "ann" else None
     for plan in plans:
-        with _progress("trajectory") as tick, warnings.catch_warnings():
+        with progress_bar("trajectory") as watch, warnings.catch_warnings():
             warnings.simplefilter("ignore", OutsideTraining)  # the plan's notes say it
             search = partial(
                 mobile.plan_trajectory,
@@ -183,21 +182,12 @@ def _motions(
                 radius=radius,
                 rng=rng,
                 model=model,
-                callback=tick,
+                watch=watch,
             )
             motion = kept(search)
         yield motion
         if motion.interrupted:
             return
-
-
-@contextmanager
-def _progress(name: str) -> Iterator[Tick]:
-    """A bar on the terminal that follows a search."""
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(name, total=1.0)
-        yield lambda search: bar.update(task, completed=search.run.progress)
 
 
 def _show(plans: list[PathPlan], motions: list[TrajectoryPlan], best: int) -> None:

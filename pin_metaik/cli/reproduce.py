@@ -13,13 +13,14 @@ import typer
 from rich.console import Console
 
 from pin_metaik.cli.codes import INTERRUPTED
+from pin_metaik.cli.progress import progress_bar
 from pin_metaik.compare import papers
 from pin_metaik.compare.lock import locked
 from pin_metaik.compare.papers import PAPERS, Options, Reproduction
 from pin_metaik.compare.report.show import show
 from pin_metaik.compare.report.write import need_figures, write
-from pin_metaik.errors import UnknownName
 from pin_metaik.interrupts import kept
+from pin_metaik.lookup import lookup
 from pin_metaik.output import writable
 
 QUICK_RUNS = 3
@@ -40,20 +41,19 @@ def reproduce(
     rng: Annotated[int, typer.Option(min=0, help="Seed of everything random.")] = 0,
 ) -> None:
     """Run a paper's experiment again: its numbers and ours side by side. Ctrl-C keeps what is done."""
-    if name not in PAPERS:
-        raise UnknownName("paper", name, PAPERS)
+    paper = lookup("paper", name, PAPERS)
     if out is not None:
         if figures:
             need_figures()
         writable(out, folder=True)
         for before in out.glob(f"{name}*"):
             writable(before)
-    paper = PAPERS[name]
     options = Options(runs or (min(QUICK_RUNS, paper.runs) if quick else paper.runs), quick, long, rng)
     console = Console(width=None if sys.stdout.isatty() else WIDE)
     console.print(f"{paper.title}\n{paper.source}", markup=False, highlight=False)
     with nullcontext() if out is None else _alone_in(out):
-        again = kept(lambda: papers.reproduce(paper, options, Console(stderr=True)))
+        with progress_bar(name) as watch:
+            again = kept(lambda: papers.reproduce(paper, options, watch))
         show(again.sections, console)
         console.print(f"\n{again}", style="yellow" if again.partial else None, markup=False, highlight=False)
         if out is not None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING, fields
 from importlib.resources import files
@@ -21,7 +19,10 @@ from pin_metaik.collision.numbers import three
 from pin_metaik.collision.obstacle import Obstacle
 from pin_metaik.collision.shapes import Box, Capsule, Cone, Cylinder, HalfSpace, Plane, Shape, Sphere
 from pin_metaik.errors import InvalidGeometry, UnknownName
+from pin_metaik.files import read_json
 from pin_metaik.kinematics.pose import rpy_matrix
+from pin_metaik.lookup import lookup
+from pin_metaik.toml import read_toml
 
 
 class Kind(NamedTuple):
@@ -108,9 +109,7 @@ def load_scene(source: str | Path) -> tuple[Obstacle, ...]:
     path = Path(source)
     if isinstance(source, Path) or path.suffix.lower() in READERS or len(path.parts) > 1:
         return _obstacles(_read(path), str(path), path.parent)
-    if source not in _shipped():
-        raise UnknownName("scene", source, _shipped())
-    return _obstacles(_read(_shipped()[source]), source, Path())
+    return _obstacles(_read(lookup("scene", source, _shipped())), source, Path())
 
 
 def _shipped() -> dict[str, Traversable]:
@@ -118,18 +117,9 @@ def _shipped() -> dict[str, Traversable]:
     return {entry.name.removesuffix(".toml"): entry for entry in folder.iterdir() if entry.name.endswith(".toml")}
 
 
-def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """A JSON object whose keys are all different, as TOML wants them."""
-    names = [name for name, _ in pairs]
-    twice = next((name for name in names if names.count(name) > 1), None)
-    if twice is not None:
-        raise ValueError(f"the key {twice!r} is there twice")
-    return dict(pairs)
-
-
-READERS: dict[str, Callable[[str], Any]] = {
-    ".toml": tomllib.loads,
-    ".json": lambda text: json.loads(text, object_pairs_hook=_once),
+READERS: dict[str, Callable[[Path | Traversable, type[InvalidGeometry]], Any]] = {
+    ".toml": read_toml,
+    ".json": read_json,
 }
 
 
@@ -137,18 +127,7 @@ def _read(path: Path | Traversable) -> Any:
     suffix = Path(path.name).suffix.lower()
     if suffix not in READERS:
         raise InvalidGeometry(f"cannot read the scene {path}: a scene is a .toml or a .json file")
-    try:
-        file = path.expanduser() if isinstance(path, Path) else path
-        text = file.read_text(encoding="utf-8-sig")
-    except (OSError, RuntimeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise InvalidGeometry(f"cannot read the scene {path}: {reason}") from None
-    except ValueError as error:
-        raise InvalidGeometry(f"{path} is not text: {error}") from None
-    try:
-        return READERS[suffix](text)
-    except (ValueError, RecursionError) as error:
-        raise InvalidGeometry(f"{path} is not {suffix[1:].upper()}: {error}") from None
+    return READERS[suffix](path, InvalidGeometry)
 
 
 def _obstacles(scene: Any, name: str, folder: Path) -> tuple[Obstacle, ...]:
@@ -164,9 +143,7 @@ def _obstacle(entry: Mapping[str, Any], where: str, folder: Path) -> Obstacle:
         if not isinstance(entry.get(key), str):
             raise InvalidGeometry(f"{where}: its {key} is a text, got {entry.get(key)!r}")
     where = f"{where}, {entry['name']!r}"
-    if entry["shape"] not in KINDS:
-        raise UnknownName(f"shape of {where},", entry["shape"], KINDS)
-    kind = KINDS[entry["shape"]]
+    kind = lookup(f"shape of {where},", entry["shape"], KINDS)
     _check_keys(entry, (*KEYS, *kind.known), f"{where}, a {entry['shape']},")
     lacking = [key for key in kind.needed if key not in entry]
     if lacking:

@@ -18,7 +18,7 @@ from pin_metaik.errors import InvalidGeometry
 
 @dataclass(frozen=True)
 class Box:
-    """A box around the origin.
+    """A solid box around the origin, an obstacle or a grasped thing; the box of a search is ``mik.Box``.
 
     Attributes:
         size: Edge lengths along x, y and z, m.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from importlib.util import find_spec
 from typing import Any
 
 import coal
@@ -16,7 +15,8 @@ from pinocchio.visualize import ViserVisualizer
 from pin_metaik.collision.drawing import surface
 from pin_metaik.collision.obstacle import Obstacle, placement
 from pin_metaik.collision.world import CollisionWorld
-from pin_metaik.errors import FrameNotFound, InvalidSetting, MissingExtra
+from pin_metaik.errors import FrameNotFound, InvalidSetting
+from pin_metaik.lookup import need
 
 WOOD, HELD = np.array([0.72, 0.53, 0.35, 1.0]), np.array([0.2, 0.5, 0.3, 1.0])  # red, green, blue, opacity
 RED = np.array([0.85, 0.12, 0.1])
@@ -166,8 +166,7 @@ def open_viewer(world: CollisionWorld, port: int = 8080, frame: str | None = Non
         MissingExtra: If viser, trimesh or pycollada is not installed.
         FrameNotFound: If the robot has no such frame.
     """
-    if not all(find_spec(name) for name in ("viser", "trimesh", "collada")):
-        raise MissingExtra("looking at a world", "viewer")
+    need("looking at a world", "viewer", "viser", "trimesh", "collada")
     if frame is not None and not world.model.existFrame(frame):
         raise FrameNotFound(frame, {f.name for f in world.model.frames} - {"universe"})
     import viser

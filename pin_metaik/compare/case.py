@@ -7,17 +7,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.compare.method import Answer
 from pin_metaik.errors import MetaIKError, UnsupportedJoint
 from pin_metaik.ik import IKProblem, IKStatus, Verdict
 from pin_metaik.kinematics import Chain
 from pin_metaik.robots import Robot
-
-Array = NDArray[np.float64]
 
 DRAWS = 1_000  # of a task, before a world is found to leave no room
 REACHED = "Within 1e-5 m and 1e-5 rad of the target and inside the limits, by Pinocchio, whatever the method says."
@@ -86,14 +84,6 @@ class Attempt:
     def X(self) -> Array:
         """(K, n) the answers."""
         return np.array([answer.x for answer in self.answers])
-
-
-def travel(chain: Chain, a: Array, b: Array) -> Array:
-    """How far the joints move from a to b (..., n); a continuous one takes the shorter way round."""
-    step = b - a
-    periodic = chain.limits.periodic
-    step[..., periodic] = (step[..., periodic] + np.pi) % (2.0 * np.pi) - np.pi
-    return step
 
 
 def whole_arm(robot: Robot, rng: np.random.Generator) -> Chain:

@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from pin_metaik.compare.cost import FK_WITH_JACOBIAN
-from pin_metaik.compare.reading import entries, read_json
+from pin_metaik.compare.reading import entries
 from pin_metaik.compare.store import replace_text
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.files import read_json
 
 FILE = "environment.json"
 KEYS = ("date", "command", "processor", "cores", "system", "python", "packages", "kernel_evaluations")
@@ -53,7 +54,7 @@ def read_environment(folder: Path) -> list[dict[str, Any]]:
         InvalidSetting: The file that should list them does not.
     """
     path = folder / FILE
-    sessions = read_json(path) if path.exists() else []
+    sessions = read_json(path, InvalidSetting) if path.exists() else []
     if not isinstance(sessions, list):
         raise InvalidSetting(f"{path} is not a list of sessions")
     return [entries(session, f"session {i} of {path}", KEYS) for i, session in enumerate(sessions, start=1)]

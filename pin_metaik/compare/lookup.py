@@ -9,6 +9,7 @@ from pin_metaik.compare.cases import CASES
 from pin_metaik.compare.method import Method
 from pin_metaik.compare.methods import named
 from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.lookup import lookup
 
 
 def case_of(case: str | Case) -> Case:
@@ -20,9 +21,7 @@ def case_of(case: str | Case) -> Case:
     """
     found = imported("case", case) if isinstance(case, str) and ":" in case else case
     if isinstance(found, str):
-        if found not in CASES:
-            raise UnknownName("case", found, CASES)
-        return CASES[found]
+        return lookup("case", found, CASES)
     if not isinstance(found, Case):
         raise InvalidSetting(f"not a case: {found!r}; give a name or a pin_metaik.compare.Case")
     return found

@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pin_metaik.arrays import Array
 from pin_metaik.ik import IKProblem
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,15 +7,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.compare.record import CaseRecord, Record
 from pin_metaik.compare.statistics import Pair, compare_all, wilson
 from pin_metaik.compare.trial import Trial
 from pin_metaik.ik import IKStatus
-
-Array = NDArray[np.float64]
 
 PENALTY = 10.0  # an unsolved trial costs this many times what was allowed ("PAR10")
 

@@ -7,9 +7,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-
 from pin_metaik.arguments import checked
 from pin_metaik.compare import environment
 from pin_metaik.compare.baggage import pack
@@ -20,9 +17,10 @@ from pin_metaik.compare.store import ROWS, Appender, check_record, need_parquet,
 from pin_metaik.compare.suite import Suite
 from pin_metaik.compare.workers import Backend, need_joblib, worked
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.interrupts import Interrupted, Pressed
+from pin_metaik.interrupts import Pressed
 from pin_metaik.optimize.settings import one_of
 from pin_metaik.output import writable
+from pin_metaik.watching import Progress, Watch, ended, tell
 
 MOST_JOBS = 10_000
 
@@ -73,7 +71,7 @@ def compare(
     backend: Backend = "loky",
     scheduler: str | None = None,
     command: str = "pin_metaik.compare.compare(...)",
-    console: Console | None = None,
+    watch: Watch | None = None,
 ) -> Outcome:
     """Run a comparison, or what is left of it, into a folder. Ctrl-C, or worse, loses none of the finished tasks.
 
@@ -87,7 +85,7 @@ def compare(
         backend: joblib's: ``"loky"`` for processes here, ``"dask"`` for a Dask cluster.
         scheduler: Address of the Dask scheduler, e.g. ``"tcp://node1:8786"``.
         command: What to write down as the command that did it.
-        console: Where to show a progress bar; nowhere if None.
+        watch: Called after every task with rows there are and shall be; True ends the comparison there.
 
     Raises:
         MissingExtra: joblib, pyarrow or distributed are not installed.
@@ -125,25 +123,13 @@ def compare(
             return Outcome(folder, *counts, tuple(f"{name}: {why}" for name, why in absent.items()), error)
 
         try:
-            with Pressed() as pressed, _bar(console) as bar, Appender(folder) as file:
-                bar_task = bar.add_task("comparing", total=record.trials, completed=before)
+            with Pressed() as pressed, Appender(folder) as file:
                 for trials in worked(list(suite.units(rows.keys(), absent)), jobs, backend, scheduler):
                     pressed.check()
                     file.add(trials)
                     rows.update((trial.key, trial) for trial in trials)
-                    bar.update(bar_task, completed=len(rows), description=f"{trials[-1].robot}, {trials[-1].case}")
-        except KeyboardInterrupt:
-            raise Interrupted(outcome()) from None
+                    label = f"{trials[-1].robot}, {trials[-1].case}"
+                    tell(watch, Progress(len(rows), record.trials, label=label))
+        except KeyboardInterrupt as stop:
+            return ended(stop, outcome())
         return outcome()
-
-
-def _bar(console: Console | None) -> Progress:
-    columns = (TextColumn("{task.description:28}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    return Progress(
-        *columns,
-        TextColumn("left"),
-        TimeRemainingColumn(),
-        console=console or Console(quiet=True),
-        transient=True,
-        disable=console is None,
-    )

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from pin_metaik.arrays import Array
 
 CONFIDENCE, SIGNIFICANT = 0.95, 0.05
 EXACT = 50  # differences, up to which p-values are exact: a quarter of a millisecond each

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from pin_metaik.arguments import checked
-from pin_metaik.compare.reading import read_json
 from pin_metaik.compare.record import RECORD, Record
 from pin_metaik.compare.results import Results
 from pin_metaik.compare.trial import Trial
-from pin_metaik.errors import InvalidSetting, MissingExtra
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.files import read_json
+from pin_metaik.lookup import need
 
 ROWS, PARQUET = "rows.jsonl", "rows.parquet"
 
@@ -24,8 +24,7 @@ def need_parquet() -> None:
     Raises:
         MissingExtra: pyarrow is not installed.
     """
-    if find_spec("pyarrow") is None:
-        raise MissingExtra("writing Parquet", "compare")
+    need("writing Parquet", "compare", "pyarrow")
 
 
 def check_record(folder: Path, record: Record) -> None:
@@ -52,7 +51,7 @@ def read_record(folder: Path) -> Record:
     path = folder / RECORD
     if not path.exists():
         raise InvalidSetting(f"{folder} holds no comparison: make one with pin-metaik compare --out {folder}")
-    return Record.from_json(read_json(path), path)
+    return Record.from_json(read_json(path, InvalidSetting), path)
 
 
 def read_rows(folder: Path) -> list[Trial]:

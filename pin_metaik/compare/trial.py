@@ -13,12 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
-from pin_metaik.compare.case import Attempt, Case, Task, travel
+from pin_metaik.arrays import Array
+from pin_metaik.compare.case import Attempt, Case, Task
 from pin_metaik.compare.method import Answer, Method
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik import IKProblem
-
-Array = NDArray[np.float64]
 
 CURVE = np.geomspace(0.005, 1.0, 32)  # shares of the budget at which a row keeps the best cost so far
 TIMES = ("seconds",)  # what no two runs have in common
@@ -162,7 +161,7 @@ def _judged(
         status=done.answers[-1].status,
         position_error=_finite(max(verdict.position_error for verdict in done.verdicts)),
         orientation_error=_finite(max(verdict.orientation_error for verdict in done.verdicts)),
-        displacement=_finite(float(np.linalg.norm(travel(task.chain, done.x0, last)))),
+        displacement=_finite(float(np.linalg.norm(task.chain.limits.way(done.x0, last)))),
         evaluations=spent,
         x=tuple(map(_finite, last.tolist())),
         curve=curve,

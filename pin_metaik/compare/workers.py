@@ -6,14 +6,14 @@ import contextlib
 import threading
 import warnings
 from collections.abc import Iterator
-from importlib.util import find_spec
 from multiprocessing import resource_tracker
 from typing import Any, Literal, TypeAlias
 
 from pin_metaik.compare.trial import Trial
 from pin_metaik.compare.unit import Unit
-from pin_metaik.errors import InvalidSetting, MissingExtra
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import Pressed, deaf_children
+from pin_metaik.lookup import need
 
 Backend: TypeAlias = Literal["loky", "dask"]
 
@@ -27,8 +27,7 @@ def need_joblib() -> None:
     Raises:
         MissingExtra: joblib is not installed.
     """
-    if find_spec("joblib") is None:
-        raise MissingExtra("comparing methods", "compare")
+    need("comparing methods", "compare", "joblib")
 
 
 def worked(units: list[Unit], jobs: int, backend: Backend, scheduler: str | None) -> Iterator[list[Trial]]:
@@ -80,8 +79,7 @@ def _no_last_words() -> Iterator[None]:
 
 def _cluster(scheduler: str | None) -> Any:
     """A client of a Dask cluster, to be closed."""
-    if find_spec("distributed") is None:
-        raise MissingExtra("a Dask cluster", "cluster")
+    need("a Dask cluster", "cluster", "distributed")
     from distributed import Client
 
     if scheduler is None:

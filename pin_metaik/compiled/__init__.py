@@ -13,10 +13,11 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arrays import Array
 from pin_metaik.compiled.on_disk import MachineCode
 from pin_metaik.interrupts import Pressed
 
-Floats = NDArray[np.float64]
+Floats = Array
 Singles = NDArray[np.float32]
 Ints = NDArray[np.int64]
 F = TypeVar("F", bound=Callable[..., Any])

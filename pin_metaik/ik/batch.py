@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 from typing import TypeAlias, cast
@@ -27,6 +27,7 @@ from pin_metaik.kinematics import RESTARTS, Chain
 from pin_metaik.kinematics.kernel.layout import ANGLE, DISTANCE, WITHOUT_BRANCH
 from pin_metaik.optimize.settings import whole
 from pin_metaik.randomness import Rng, as_seed
+from pin_metaik.watching import Count, Stopped, Watch
 
 Rows: TypeAlias = slice | NDArray[np.int64]
 
@@ -103,6 +104,7 @@ def solve_ik_batch(
     world: CollisionWorld | None = None,
     workers: int | None = None,
     rng: Rng = None,
+    watch: Watch | None = None,
 ) -> IKBatch:
     """Solve many targets, each as ``solve_ik`` would.
 
@@ -116,6 +118,8 @@ def solve_ik_batch(
         workers: Threads; default: one a core. The answers do not depend on it.
         rng: Seed or generator of every random choice; ``None`` is a fixed seed. A generator gives the whole batch one
             seed.
+        watch: Called with targets done and in all, from any of the threads, one at a time; True ends the batch: targets
+            that were not decided by then have the status ``STOPPED``, and errors of NaN where nothing was tried.
 
     Raises:
         InvalidTarget: If a target is none; its number is named.
@@ -128,14 +132,16 @@ def solve_ik_batch(
     check_world(chain, world)
     solver = DEFAULT_SOLVER if solver is None else solver
     instance(IKSolver, solver=solver)
+    if watch is not None:
+        instance(Callable, watch=watch)
     seed = as_seed(rng)
     array = _as_array(targets)
     asked = cast(Sequence[TargetLike], targets) if array is None else array
     k = len(asked)
     bases = _bases(chain, q0, k)
     batch = IKBatch(
-        bases.copy(), np.zeros(k, bool), np.empty(k, object), np.full(k, None), np.zeros(k), np.zeros(k),
-        np.zeros(k, int), 0.0, chain, asked, world,
+        bases.copy(), np.zeros(k, bool), np.full(k, IKStatus.STOPPED, object), np.full(k, None),
+        np.full(k, np.nan), np.full(k, np.nan), np.zeros(k, int), 0.0, chain, asked, world,
     )  # fmt: skip
 
     def alone(i: int) -> None:
@@ -143,33 +149,39 @@ def solve_ik_batch(
             result = solve_ik(chain, asked[i], bases[i], solver=solver, world=world, rng=seed)
         except InvalidTarget as error:
             raise InvalidTarget(f"target {i}: {error}") from None
-        batch.q[i], batch.success[i], batch.status[i] = result.q, result.success, result.status
+        batch.q[i], batch.evaluations[i], batch.proof[i] = result.q, result.evaluations, result.proof
         batch.position_error[i], batch.orientation_error[i] = result.position_error, result.orientation_error
-        batch.evaluations[i], batch.proof[i] = result.evaluations, result.proof
         if result.contacts:
             batch.contacts[i] = result.contacts
+        batch.status[i], batch.success[i] = result.status, result.success  # last: a watch may end a thread anywhere
+        count.add(1)
 
     settings = solver.kernel_settings if array is not None and chain.has_pose_solver else None
     workers = min(workers or os.cpu_count() or 1, max(k, 1))
     left: Iterable[int] = range(k)
-    if array is not None and settings is not None and k:
-        poses, starts = _as_poses(array), drawn(chain, seed, 0, RESTARTS)
-        settings = settings.copy()
-        settings[WITHOUT_BRANCH] = 0.0  # then ``alone`` decides
-        if array.ndim == 2:
-            settings[ANGLE] = math.inf
+    count = Count(watch, k)
+    try:
+        if array is not None and settings is not None and k:
+            poses, starts = _as_poses(array), drawn(chain, seed, 0, RESTARTS)
+            settings = settings.copy()
+            settings[WITHOUT_BRANCH] = 0.0  # then ``alone`` decides
+            if array.ndim == 2:
+                settings[ANGLE] = math.inf
 
-        def together(part: Rows) -> None:
-            q, evaluations, goals = batch.q[part], batch.evaluations[part], poses[part]
-            here = chain.at(q[0])
-            kernel = here.pose_solver if array.ndim == 3 else here.position_solver
-            chain.kernels.solve_poses(kernel.block, kernel.rows, starts, settings, goals, q, evaluations)
-            batch.q[part], batch.evaluations[part] = q, evaluations
-            _judge(batch, goals, settings[DISTANCE : ANGLE + 1], part)
+            def together(part: Rows) -> None:
+                q, evaluations, goals = batch.q[part], batch.evaluations[part], poses[part]
+                here = chain.at(q[0])
+                kernel = here.pose_solver if array.ndim == 3 else here.position_solver
+                chain.kernels.solve_poses(kernel.block, kernel.rows, starts, settings, goals, q, evaluations)
+                batch.q[part], batch.evaluations[part] = q, evaluations
+                _judge(batch, goals, settings[DISTANCE : ANGLE + 1], part)
+                count.add(int(batch.success[part].sum()))
 
-        share_out(together, _parts(chain, bases, workers), workers)
-        left = np.flatnonzero(~batch.success).tolist()
-    share_out(alone, left, workers)
+            share_out(together, _parts(chain, bases, workers), workers)
+            left = np.flatnonzero(~batch.success).tolist()
+        share_out(alone, left, workers)
+    except Stopped:
+        batch.status[~batch.success & (batch.status == IKStatus.SOLVED)] = IKStatus.STOPPED
     return replace(batch, seconds=perf_counter() - began)
 
 
@@ -195,8 +207,8 @@ def _judge(batch: IKBatch, poses: NDArray[np.float64], tolerances: NDArray[np.fl
     met = (batch.evaluations[part] >= 0) & (position <= tolerances[0]) & (orientation <= tolerances[1])
     if batch.world is not None:
         met[met] = [not batch.world.checker.collides(one) for one in q[met]]
-    batch.success[part] = met
     batch.status[part] = IKStatus.SOLVED
+    batch.success[part] = met
 
 
 def _as_array(targets: ArrayLike | Sequence[TargetLike]) -> NDArray[np.float64] | None:

@@ -17,7 +17,7 @@ from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.push import Push
 from pin_metaik.ik.starts import BATCH, drawn
 from pin_metaik.optimize import Budget, Metaheuristic, minimize
-from pin_metaik.randomness import DEFAULT_SEED, Rng, as_generator
+from pin_metaik.randomness import Rng, as_generator
 
 NEAREST = 24  # entries of the atlas to start from
 EVERY = 50_000  # evaluations for all solutions, where time is what is budgeted
@@ -59,7 +59,7 @@ class ClearSearch:
         self._depths = np.full(CANDIDATES, np.nan)  # of the solutions found, NaN where not known yet
         self._pushed: set[int] = set()
         self._redundant = problem.chain.n > len(problem.rows) or problem.loose
-        self._generator = as_generator(DEFAULT_SEED if rng is None else rng)
+        self._generator = as_generator(rng)
 
     def run(self, x: NDArray[np.float64], seeder: Metaheuristic) -> NDArray[np.float64] | None:
         """Coordinates (n,) that are a solution, from x (n,), which is one but for collisions; None: none was found."""

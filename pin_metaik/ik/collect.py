@@ -9,6 +9,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arrays import Array
 from pin_metaik.dexterity import singular_values
 from pin_metaik.ik.exclude import Exclusion
 from pin_metaik.ik.gather import SETTINGS, VAIN, VAIN_EACH, gather
@@ -19,8 +20,7 @@ from pin_metaik.ik.starts import drawn
 from pin_metaik.kinematics.proofs.boxes import Boxes
 from pin_metaik.optimize import Budget
 from pin_metaik.randomness import Rng
-
-Floats = NDArray[np.float64]
+from pin_metaik.watching import Progress, Stopped, Watch, tell
 
 BATCH = 128  # starts between two looks at what came of them
 MIDDLE = 5000  # evaluations for a solution in the middle of loose tolerances before all of them is aimed at
@@ -34,18 +34,21 @@ TURN = 2.0 * np.pi
 
 
 def collect(
-    problem: IKProblem, x0: Floats, rng: Rng, *, limit: int, apart: float, budget: Budget
-) -> tuple[IKProblem, Floats, Proof | None, int]:
+    problem: IKProblem, x0: Array, rng: Rng, *, limit: int, apart: float, budget: Budget, watch: Watch | None = None
+) -> tuple[IKProblem, Array, Proof | None, int]:
     """Distinct solutions (s, n), what proves that they are all, and the evaluations spent.
 
     They are in the middle of the tolerances; if nothing is, anywhere in them, which is returned as the problem first.
+
+    Raises:
+        Stopped: The watch says so; its ``result`` is the solutions so far and the evaluations spent.
     """
-    middle = Collection(problem, x0, rng, limit, apart, budget)
+    middle = Collection(problem, x0, rng, limit, apart, budget, watch)
     middle.run()
     ledger = middle.ledger
     if middle.known or ledger.over():
         return problem, middle.solutions, middle.complete, ledger.spent
-    rest = Collection(problem.whole, x0, rng, limit, apart, budget, ledger.spent)
+    rest = Collection(problem.whole, x0, rng, limit, apart, budget, watch, ledger.spent)
     rest.run()
     return problem.whole, rest.solutions, rest.complete, rest.ledger.spent
 
@@ -61,19 +64,27 @@ class Collection:
     """
 
     def __init__(
-        self, problem: IKProblem, x0: Floats, rng: Rng, limit: int, apart: float, budget: Budget, spent: int = 0
+        self,
+        problem: IKProblem,
+        x0: Array,
+        rng: Rng,
+        limit: int,
+        apart: float,
+        budget: Budget,
+        watch: Watch | None = None,
+        spent: int = 0,
     ) -> None:
         """Begin with no solution; x0 (n,) is where to start from, and what its joints keep where they do not matter."""
         self.problem, self.ledger = problem, Ledger(problem, budget, perf_counter(), x0)
         self.ledger.spent = spent
         self.known = 0
         self.complete: Proof | None = None
-        self._x0, self._rng, self._apart = x0, rng, apart
+        self._x0, self._rng, self._apart, self._watch = x0, rng, apart, watch
         self._found = np.empty((limit, problem.chain.n))
         self._vain = 0
 
     @property
-    def solutions(self) -> Floats:
+    def solutions(self) -> Array:
         """(s, n) so far."""
         return self._found[: self.known]
 
@@ -96,7 +107,7 @@ class Collection:
             self._keep_exact()
             self._by_cover()
 
-    def _by_closed_form(self, whole: Floats) -> bool:
+    def _by_closed_form(self, whole: Array) -> bool:
         """Descend from the branches of the arm's closed form; whether that is all one can do.
 
         Each branch that meets the pose exactly has its solution in the end, or it is open whether there are more. Where
@@ -130,6 +141,8 @@ class Collection:
             starts = drawn(problem.chain, self._rng, index, BATCH)
             if index == 0:
                 starts = np.concatenate([self._x0[None], problem.near(BATCH), starts])
+            if index:
+                self._tell(total)
             enough = VAIN + VAIN_EACH * self.known
             self._descend(starts, enough - self._vain)
             if not self.known:
@@ -149,6 +162,17 @@ class Collection:
                 or hopeless
             ):
                 return
+
+    def _tell(self, total: int) -> None:
+        """Say how many of the evaluations are spent.
+
+        Raises:
+            Stopped: The watch says so; its ``result`` is the solutions so far and the evaluations spent.
+        """
+        try:
+            tell(self._watch, Progress(self.ledger.spent, total))
+        except Stopped:
+            raise Stopped((self.solutions, self.ledger.spent)) from None
 
     def _keep_exact(self) -> None:
         """Take solutions to the pose itself; what comes to the same was within the tolerances, near a singularity."""
@@ -186,7 +210,7 @@ class Collection:
         if self._are_clear(boxes, kept[~self._near_solution(kept)]):
             self.complete = Proof.BOXES
 
-    def _are_clear(self, boxes: Boxes, kept: Floats) -> bool:
+    def _are_clear(self, boxes: Boxes, kept: Array) -> bool:
         """Whether boxes (k, 2 n) that were kept hold nothing distinct from the solutions, when looked at closely."""
         for box in kept:
             part = boxes.within(box, FINEST)
@@ -196,7 +220,7 @@ class Collection:
                 return False
         return True
 
-    def _descend(self, starts: Floats, patience: int, *, branch: bool = True) -> None:
+    def _descend(self, starts: Array, patience: int, *, branch: bool = True) -> None:
         """Descend from each of the starts (s, n), until ``patience`` in a row led to nothing new."""
         if not len(starts):
             return
@@ -213,17 +237,17 @@ class Collection:
         slack = self.problem.whole.tasks[:, 12:18]
         return bool((np.abs(slack[np.isfinite(slack)]) > ROOM * self._apart).any())
 
-    def _ways(self, boxes: Floats) -> Floats:
+    def _ways(self, boxes: Array) -> Array:
         """(b, s, n) how far each solution is from the centre of each of the boxes (b, 2 n), whole turns aside."""
         ways = np.abs(boxes[:, None, : self.problem.chain.n] - self.solutions)
         turns = TURN * np.round(ways / TURN)
         return np.where(self.problem.limits.winds, np.abs(ways - turns), ways)
 
-    def _has_solution(self, boxes: Floats) -> NDArray[np.bool_]:
+    def _has_solution(self, boxes: Array) -> NDArray[np.bool_]:
         """(b,) whether there is a solution in each of the boxes (b, 2 n)."""
         return _any(self._ways(boxes) <= boxes[:, None, self.problem.chain.n :] + FINEST)
 
-    def _near_solution(self, boxes: Floats) -> NDArray[np.bool_]:
+    def _near_solution(self, boxes: Array) -> NDArray[np.bool_]:
         """(b,) whether all of each box (b, 2 n) is so near to a solution that nothing in it is distinct from that."""
         return _any(self._ways(boxes) + boxes[:, None, self.problem.chain.n :] <= self._apart)
 

@@ -23,6 +23,7 @@ from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.randomness import Rng
+from pin_metaik.watching import Progress, Stopped, Watch, tell
 
 WIDEST = 48  # solutions in a layer
 FRESH = 24  # starts from the atlas and as many random ones for a layer of its own
@@ -41,6 +42,7 @@ class IKPath:
         longest_step: Largest step of any joint between poses without a break, rad or m.
         seconds: Time taken, s.
         chain: The chain.
+        interrupted: Whether a watch ended it before every pose was looked at.
     """
 
     q: NDArray[np.float64]
@@ -49,6 +51,7 @@ class IKPath:
     longest_step: float
     seconds: float
     chain: Chain = field(repr=False)
+    interrupted: bool = False
 
     @property
     def continuous(self) -> bool:
@@ -77,6 +80,7 @@ def solve_ik_path(
     max_step: float | ArrayLike = 0.2,
     world: CollisionWorld | None = None,
     rng: Rng = None,
+    watch: Watch | None = None,
 ) -> IKPath:
     """Follow a sequence of poses without jumps.
 
@@ -88,6 +92,7 @@ def solve_ik_path(
         max_step: Largest step of a joint from one pose to the next, rad or m: one number, or (n,) one a joint.
         world: What must not collide at any of the poses; the steps between them are not looked at.
         rng: Seed or generator; ``None`` is a fixed seed.
+        watch: Called with poses done and in all; True ends the path: the poses that follow are not met.
 
     Returns:
         The path. Where it is not continuous, ``breaks`` and ``success`` say where: nothing jumps silently.
@@ -109,21 +114,39 @@ def solve_ik_path(
     chain = chain if q0 is None else chain.at(q0)
     base = chain.reference if q0 is None else chain.configuration(q0)
     problems = [IKProblem.of(chain, target, world) for target in targets]
-    layers = _layers(problems, base, q0 is not None, rng)
+    layers: list[NDArray[np.float64]] = []
+    interrupted = False
+    try:
+        _add_layers(layers, problems, base, q0 is not None, rng, watch)
+    except Stopped:
+        layers += [np.empty((0, chain.n))] * (len(problems) - len(layers))
+        interrupted = True
     x, breaks = _best_way(chain, layers, bound, None if q0 is None else chain.x(base))
     q = chain.q(x, base)
     success = np.array([problem.accepts(one) for problem, one in zip(problems, q, strict=True)])
-    steps = np.abs(_steps(chain, x[:-1], x[1:])).max(axis=1, initial=0.0)
+    steps = np.abs(chain.limits.way(x[:-1], x[1:])).max(axis=1, initial=0.0)
     steps[[i - 1 for i in breaks]] = 0.0
-    return IKPath(q, success, tuple(breaks), float(steps.max(initial=0.0)), perf_counter() - began, chain)
+    return IKPath(q, success, tuple(breaks), float(steps.max(initial=0.0)), perf_counter() - began, chain, interrupted)
 
 
-def _layers(problems: list[IKProblem], base: NDArray[np.float64], near: bool, rng: Rng) -> list[NDArray[np.float64]]:
-    """Solutions (s, n) of every pose, the joints off the chain being as in base (nq,); empty where none was found."""
-    layers: list[NDArray[np.float64]] = []
+def _add_layers(
+    layers: list[NDArray[np.float64]],
+    problems: list[IKProblem],
+    base: NDArray[np.float64],
+    near: bool,
+    rng: Rng,
+    watch: Watch | None,
+) -> None:
+    """Add solutions (s, n) of every pose, the joints off the chain being as in base (nq,); empty where none was found.
+
+    Raises:
+        Stopped: The watch says so; the layers are those so far.
+    """
     x0 = problems[0].chain.x(base)
     followed = x0[None] if near else np.empty((0, len(x0)))
     for index, problem in enumerate(problems):
+        if index:
+            tell(watch, Progress(index, len(problems)))
         if problem.refuted not in (None, Proof.LIMITS):
             layers.append(np.empty((0, len(x0))))
             continue
@@ -138,7 +161,8 @@ def _layers(problems: list[IKProblem], base: NDArray[np.float64], near: bool, rn
         followed = layer if len(layer) else followed
     for i in range(len(problems) - 2, -1, -1):  # what only a later pose found may have begun earlier
         layers[i] = _widened(problems[i], base, layers[i], layers[i + 1], followed=True)
-    return layers
+    if watch is not None:
+        watch(Progress(len(problems), len(problems)))  # there is nothing left to end
 
 
 def _widened(
@@ -164,14 +188,6 @@ def _widened(
     return found[:known]
 
 
-def _steps(chain: Chain, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Joint steps from a to b (..., n); a continuous joint takes the shorter way round."""
-    step = b - a
-    periodic = chain.limits.periodic
-    step[..., periodic] -= 2.0 * np.pi * np.round(step[..., periodic] / (2.0 * np.pi))
-    return step
-
-
 def _best_way(
     chain: Chain, layers: list[NDArray[np.float64]], bound: NDArray[np.float64], x0: NDArray[np.float64] | None
 ) -> tuple[NDArray[np.float64], list[int]]:
@@ -179,9 +195,9 @@ def _best_way(
 
     A pose without a solution keeps the joints where the pose before it had them.
     """
-    jump = 1e6  # dearer than any way
+    jump = 1e6  # more than any path costs
     here = layers[0]
-    costs = np.zeros(len(here)) if x0 is None else np.linalg.norm(_steps(chain, x0, here), axis=1)
+    costs = np.zeros(len(here)) if x0 is None else np.linalg.norm(chain.limits.way(x0, here), axis=1)
     trail: list[tuple[int, NDArray[np.int64]]] = [(0, np.zeros(0, np.int64))] if len(here) else []
     for i in range(1, len(layers)):
         if not len(layers[i]):
@@ -190,7 +206,7 @@ def _best_way(
             here, costs = layers[i], np.zeros(len(layers[i]))
             trail.append((i, np.zeros(0, np.int64)))
             continue
-        step = _steps(chain, here[:, None], layers[i][None])  # (a, b, n)
+        step = chain.limits.way(here[:, None], layers[i][None])  # (a, b, n)
         broken = (np.abs(step) > bound).any(axis=2)
         total = costs[:, None] + np.linalg.norm(step, axis=2) + jump * broken
         before = total.argmin(axis=0)
@@ -218,5 +234,5 @@ def _traced(
     last = solved[min(solved)] if solved else last
     for i in range(len(layers)):
         last = x[i] = solved.get(i, last)
-    steps = _steps(chain, x[:-1], x[1:])
+    steps = chain.limits.way(x[:-1], x[1:])
     return x, [int(i) + 1 for i in np.flatnonzero((np.abs(steps) > bound).any(axis=1))]

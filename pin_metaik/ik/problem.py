@@ -153,7 +153,14 @@ class IKProblem:
         return self.chain.reach(t, oriented).gap(self.targets[t].pose, *self.targets[t].allowance)
 
     def linearize(self, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Weighted residual r (m,) and its Jacobian by coordinate J (n, m) at x (n,)."""
+        """Weighted residual r (m,) at coordinates x (n,), and J (n, m) to descend along, dr_i/dx_c in J[c, i].
+
+        Rows are the axes that ``rows`` lists: of the error T_target^-1 T_frame, in the target frame, its position p (m)
+        and its rotation vector w = log(R) (rad), less the slack, times the weight. J is the derivative of r but for one
+        kind of row: where no axis of rotation has slack, rotation rows are the angular velocity, in the target frame,
+        times the weight. The derivative is Jl^-1(w), the inverse left Jacobian of SO(3), times that; the two are equal
+        at the target, and differ by half the angle of w to first order.
+        """
         x = array("x", x, self.chain.n)
         r, J = np.empty(len(self.rows)), np.empty((self.chain.n, len(self.rows)))
         self.chain.kernels.linearize(self.chain.bare, self.tasks, self.rows, x, r, J)

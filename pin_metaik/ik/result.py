@@ -36,7 +36,7 @@ class IKStatus(StrEnum):
     IN_COLLISION = "IN_COLLISION"
     """The target is met only in collision."""
     STOPPED = "STOPPED"
-    """Time was up. Ctrl-C is no status: it goes through to the caller."""
+    """Time was up, or a watch ended a batch. Ctrl-C is no status: it goes through to the caller."""
 
 
 @dataclass(eq=False, slots=True)  # not frozen: that takes four times as long to make, a tenth of a quick solve
@@ -129,7 +129,7 @@ class IKResult:
                 shown = collisions(self.chain, self.world, self.contacts)
                 return f"{in_collision(self.proof, self.resolution)}; the least deep found: {shown}"
             case IKStatus.STOPPED:
-                return "time was up before it was solved; this is the best so far"
+                return "time was up, or a watch said so, before it was solved; this is the best so far"
 
     @property
     def _nearest(self) -> str:

@@ -20,6 +20,7 @@ from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Budget
 from pin_metaik.optimize.settings import few, positive
 from pin_metaik.randomness import Rng
+from pin_metaik.watching import Stopped, Watch
 
 DEFAULT_BUDGET = Budget(evaluations=200_000)
 
@@ -37,6 +38,7 @@ class IKSolutions:
         evaluations: Forward kinematics computed.
         seconds: Time taken, s.
         problem: What was asked; out of a pickle, without its world, which has all meshes in it.
+        interrupted: Whether a watch ended the search.
     """
 
     q: NDArray[np.float64]
@@ -44,6 +46,7 @@ class IKSolutions:
     evaluations: int
     seconds: float
     problem: IKProblem = field(repr=False)
+    interrupted: bool = False
 
     def __getstate__(self) -> dict[str, object]:
         """Pickle without the world: kilobytes rather than megabytes."""
@@ -72,6 +75,7 @@ def solve_ik_all(
     budget: Budget = DEFAULT_BUDGET,
     world: CollisionWorld | None = None,
     rng: Rng = None,
+    watch: Watch | None = None,
 ) -> IKSolutions:
     """Find all distinct solutions of a target, and prove that there are no others where that can be had.
 
@@ -90,6 +94,7 @@ def solve_ik_all(
         budget: Evaluations (and seconds, which are not reproducible) that may be spent.
         world: What must not collide: solutions that do are left out, after they have counted towards the limit.
         rng: Seed or generator; ``None`` is a fixed seed.
+        watch: Called between batches of descents with evaluations spent and allowed; True ends the search.
 
     Raises:
         InvalidTarget: If the target is not a pose, position or orientation.
@@ -106,9 +111,13 @@ def solve_ik_all(
     problem = IKProblem.of(chain, target, world)
     base = chain.reference if q0 is None else chain.configuration(q0)
     x0 = chain.x(base)
-    _, found, complete, spent = collect(problem, x0, rng, limit=limit, apart=apart, budget=budget)
+    interrupted = False
+    try:
+        _, found, complete, spent = collect(problem, x0, rng, limit=limit, apart=apart, budget=budget, watch=watch)
+    except Stopped as stop:
+        (found, spent), complete, interrupted = stop.result, None, True
     found = chain.limits.nearest_turns(found, x0)
     found = found[np.argsort(np.linalg.norm(found - x0, axis=1), kind="stable")]
     q = chain.q(found, base)
     judged = np.array([problem.accepts(one) for one in q], dtype=bool)
-    return IKSolutions(q[judged], complete, spent, perf_counter() - began, problem)
+    return IKSolutions(q[judged], complete, spent, perf_counter() - began, problem, interrupted)

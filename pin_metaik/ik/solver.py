@@ -28,7 +28,7 @@ from pin_metaik.ik.starts import start_batches
 from pin_metaik.ik.target import DEFAULT_TOLERANCE
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
 from pin_metaik.optimize.settings import whole
-from pin_metaik.randomness import DEFAULT_SEED, Rng, as_generator
+from pin_metaik.randomness import Rng, as_generator
 
 Refine: TypeAlias = Callable[[IKProblem, NDArray[np.float64], int], Refinement]
 
@@ -255,7 +255,7 @@ class IKSolver:
         ledger: Ledger,
     ) -> None:
         """Search with the metaheuristic; with a refiner in rounds, each refining the elite of its search."""
-        generator = as_generator(DEFAULT_SEED if rng is None else rng)
+        generator = as_generator(rng)
         share = 1.0 if self._refiner is None else SEEDER_SHARE
         while True:
             budget = ledger.slice(share)

@@ -120,6 +120,13 @@ class Limits:
         turns = np.minimum(np.maximum(turns, np.ceil((self.lower - x) / turn)), np.floor((self.upper - x) / turn))
         return np.where(self.winds, self.clip(x + turn * turns), x)
 
+    def way(self, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Joint steps b - a (..., n), rad or m; a continuous joint takes the shorter way round."""
+        step = self._given("b", b) - self._given("a", a)
+        around = step[..., self.periodic]
+        step[..., self.periodic] = around - 2.0 * np.pi * np.round(around / (2.0 * np.pi))
+        return step
+
     def contains(self, x: NDArray[np.float64], tolerance: float = 0.0) -> bool:
         """Whether every coordinate is inside its limits, up to ``tolerance`` (rad or m)."""
         # Plain floats: on a handful of numbers three times quicker than numpy's reductions.

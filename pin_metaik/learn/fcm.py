@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.interrupts import Interrupted
-from pin_metaik.learn.arrays import Array, as_table
+from pin_metaik.learn.tables import as_table
 from pin_metaik.randomness import as_generator
+from pin_metaik.watching import Progress, Watch, ended, tell
 
 CHUNK = 2**16  # memberships held at a time: half a megabyte, which stays in the cache
 COINCIDENT = 1e-300  # squared distance of a point from a centre it lies on
@@ -46,7 +46,7 @@ def fuzzy_c_means(
     tolerance: float = 1e-6,
     rng: int | np.random.Generator | None = 0,
     start: ArrayLike | None = None,
-    callback: Callable[[int, float], object] | None = None,
+    watch: Watch | None = None,
 ) -> Clusters:
     """Minimise ``J = sum u_ik^m |z_k - v_i|^2`` by turns over memberships u and centres v.
 
@@ -59,9 +59,9 @@ def fuzzy_c_means(
         m: Fuzziness, above 1.
         iterations: At most.
         tolerance: Ends when no centre moved further than this share of the data's widest column.
-        rng: Seed or generator.
+        rng: Seed or generator; ``None`` is a fixed seed.
         start: Centres (c, d) to begin at instead, e.g. to go on with a run that was cut short.
-        callback: Called after every iteration with its number and J.
+        watch: Called after every iteration with their number and J; True ends the search.
 
     Raises:
         InvalidSetting: Points that are no table of finite numbers, or settings out of range.
@@ -87,10 +87,9 @@ def fuzzy_c_means(
             objective.append(J)
             converged = bool(np.abs(moved - centres).max() <= rest)
             centres = moved
-            if callback is not None:
-                callback(len(objective), J)
-    except KeyboardInterrupt:
-        raise Interrupted(Clusters(centres, np.array(objective), converged, interrupted=True)) from None
+            tell(watch, Progress(len(objective), iterations, J))
+    except KeyboardInterrupt as stop:
+        return ended(stop, Clusters(centres, np.array(objective), converged, interrupted=True))
     return Clusters(centres, np.array(objective), converged)
 
 

@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.learn.arrays import Array
 from pin_metaik.randomness import as_generator
 
 ROWS = 4096  # at a time: as many stay in the cache, and BLAS does not spread them over threads that wait for each other

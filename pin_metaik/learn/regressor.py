@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import wrapped
-from pin_metaik.learn.arrays import Array, as_table
 from pin_metaik.learn.network import Network
-from pin_metaik.learn.trainers import Callback, Trainer, Training, train
+from pin_metaik.learn.tables import as_table
+from pin_metaik.learn.trainers import Trainer, Training, train
 from pin_metaik.said import warn
+from pin_metaik.watching import Watch
 
 EDGE = 1e-9  # of the range; as far outside is still inside
 
@@ -117,7 +119,7 @@ def fit(
     trainer: str | Trainer = "lm",
     iterations: int = 1000,
     rng: int | np.random.Generator | None = 0,
-    callback: Callback | None = None,
+    watch: Watch | None = None,
 ) -> Regressor:
     """Fit a network to data; inputs and output are scaled to [-1, 1] and the mean squared error is minimised.
 
@@ -127,8 +129,8 @@ def fit(
         hidden: Neurons of each hidden layer.
         trainer: By name or as an object.
         iterations: At most; what one is depends on the trainer.
-        rng: Seed or generator of the first weights.
-        callback: Called after every iteration with its number and the error.
+        rng: Seed or generator of the first weights; ``None`` is a fixed seed.
+        watch: Called after every iteration with their number and the error; True ends the training.
 
     Raises:
         InvalidSetting: Data that do not fit together.
@@ -142,6 +144,6 @@ def fit(
     network, inputs, output = Network(X.shape[1], tuple(hidden)), Scale.of(X), Scale.of(Y)
     x, z, first = inputs.down(X), output.down(Y)[:, 0], network.initial(rng)
     return wrapped(
-        lambda: train(trainer, network, x, z, first, iterations, callback),
+        lambda: train(trainer, network, x, z, first, iterations, watch),
         lambda training: Regressor(network, training.w, inputs, output, training),
     )

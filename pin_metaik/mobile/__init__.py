@@ -8,12 +8,10 @@ problem = mobile.PathProblem.of(scene, radius=0.23, margin=0.1)
 trajectory = mobile.plan_trajectory(mobile.plan_path(problem).path, mobile.NOMAD_200, scene.obstacles)
 """
 
-from importlib.util import find_spec
+# ruff: noqa: E402  # the rooms below import shapely
+from pin_metaik.lookup import need
 
-from pin_metaik.errors import MissingExtra
-
-if find_spec("shapely") is None:
-    raise MissingExtra("planning for mobile robots", "mobile")
+need("planning for mobile robots", "mobile", "shapely")
 
 from pin_metaik.mobile.body import configurations, mobile_robot, velocities
 from pin_metaik.mobile.errors import Blocked, LooksLikeDegrees, NoPath

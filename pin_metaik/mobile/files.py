@@ -1,48 +1,13 @@
-"""Files in: what they hold, or a named error that says which file and which key is wrong."""
+"""YAML files in, and numbers at their keys, or a named error that says which file and which key is wrong."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Collection, Mapping
-from difflib import get_close_matches
-from importlib.resources.abc import Traversable
-from importlib.util import find_spec
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pin_metaik.errors import MetaIKError, MissingExtra
-
-Error = type[MetaIKError]
-
-
-def read_text(path: Path | Traversable, error: Error) -> str:
-    """The text of a file in UTF-8.
-
-    Args:
-        path: The file.
-        error: What to raise if it is missing or no text; made from one sentence.
-    """
-    try:
-        return path.read_text(encoding="utf-8-sig")
-    except OSError as reason:
-        raise error(f"cannot read {path}: {reason.strerror}") from None
-    except ValueError as reason:
-        raise error(f"{path} is not text in UTF-8: {reason}") from None
-
-
-def read_json(path: Path | Traversable, error: Error, kind: str = "JSON") -> Any:
-    """What a JSON file holds.
-
-    Args:
-        path: The file.
-        error: What to raise if it is missing or malformed; made from one sentence.
-        kind: What the file should be, for that.
-    """
-    text = read_text(path, error)
-    try:
-        return json.loads(text)
-    except (ValueError, RecursionError) as reason:
-        raise error(f"{path} is not {kind}: {reason}") from None
+from pin_metaik.files import Error, read_text
+from pin_metaik.lookup import need
 
 
 def read_yaml(path: Path, error: Error) -> Any:
@@ -55,8 +20,7 @@ def read_yaml(path: Path, error: Error) -> Any:
     Raises:
         MissingExtra: PyYAML is not installed.
     """
-    if find_spec("yaml") is None:
-        raise MissingExtra(f"reading {path}", "mobile")
+    need(f"reading {path}", "mobile", "yaml")
     import yaml
 
     text = read_text(path, error)
@@ -64,22 +28,6 @@ def read_yaml(path: Path, error: Error) -> Any:
         return yaml.safe_load(text)
     except (yaml.YAMLError, ValueError, RecursionError) as reason:
         raise error(f"{path} is not YAML: {' '.join(str(reason).split())}") from None
-
-
-def only(mapping: Mapping[Any, Any], known: Collection[str], place: str, error: Error) -> None:
-    """Make sure that a mapping has no key that nobody would read.
-
-    Args:
-        mapping: What a file holds.
-        known: The keys it may have.
-        place: The file.
-        error: What to raise, with the key that was perhaps meant.
-    """
-    for key in mapping:
-        if key not in known:
-            near = get_close_matches(str(key), known, n=1)
-            hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(known)}"
-            raise error(f"{place}: unknown key {key!r}; {hint}")
 
 
 def number(mapping: Mapping[str, Any], key: str, place: str, error: Error) -> float:

@@ -6,20 +6,19 @@ Nothing here imports matplotlib: make a ``matplotlib.figure.Figure`` (the extra 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from importlib.util import find_spec
 from pathlib import Path as File
 from typing import Any
 
 import numpy as np
 import shapely
 
-from pin_metaik.errors import MissingExtra
+from pin_metaik.arrays import Array
+from pin_metaik.lookup import need
 from pin_metaik.mobile.motion.result import TrajectoryPlan
 from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.paths.result import PathPlan
 from pin_metaik.mobile.world.border import rings
 from pin_metaik.mobile.world.scene import Scene
-from pin_metaik.optimize.space import Array
 
 # Okabe and Ito: told apart by every eye and in grey.
 BLUE, RED, GREEN, GREY, STONE = "#0072b2", "#d55e00", "#009e73", "#999999", "#c9c5bd"
@@ -38,8 +37,7 @@ def save(file: str | File, draw: Callable[[Any], None], size: tuple[float, float
     Raises:
         MissingExtra: matplotlib is not installed.
     """
-    if find_spec("matplotlib") is None:
-        raise MissingExtra("drawing figures", "plots")
+    need("drawing figures", "plots", "matplotlib")
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=size, layout="constrained")

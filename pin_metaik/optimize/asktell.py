@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.budget import Budget
 from pin_metaik.optimize.elite import Elite
 from pin_metaik.optimize.registry import make
 from pin_metaik.optimize.search import Metaheuristic, Search
 from pin_metaik.optimize.settings import few
-from pin_metaik.optimize.space import Array, Box
+from pin_metaik.optimize.space import Box
 from pin_metaik.randomness import as_generator
 
 
@@ -43,7 +44,7 @@ class AskTell:
     Args:
         box: Where to search.
         algorithm: A name of the registry or an object with a `search` method.
-        rng: Seed or generator: the same seed gives the same answer bit for bit.
+        rng: Seed or generator: the same seed gives the same answer bit for bit; ``None`` is a fixed seed.
         seeds: Points to start from (s, n) or (n,), clipped to the box. An algorithm uses as many as it has agents.
         budget: When to stop. Without one it never does, and schedules that follow the budget stay at their beginning.
         keep: How many of the best points to remember in `elite`.

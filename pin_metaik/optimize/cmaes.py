@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Generator
 from dataclasses import dataclass
-from importlib.util import find_spec
 
 import numpy as np
 
-from pin_metaik.errors import MissingExtra
+from pin_metaik.arrays import Array
+from pin_metaik.lookup import need
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import positive, whole, within
-from pin_metaik.optimize.space import Array
 
 
 @dataclass(frozen=True)
@@ -42,8 +41,7 @@ class CMAES:
             whole("agents", self.agents, 2)
         positive("sigma", self.sigma)
         within("growth", self.growth, 1)
-        if find_spec("cma") is None:
-            raise MissingExtra("CMA-ES", "cma")
+        need("CMA-ES", "cma", "cma")
 
     def search(self, run: Search) -> Generator[Array, Array, None]:
         """Propose populations (agents, n), for ever."""

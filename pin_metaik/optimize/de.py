@@ -8,10 +8,10 @@ from typing import Literal
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.optimize.pick import below, others
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import one_of, whole, within
-from pin_metaik.optimize.space import Array
 
 Strategy = Literal["rand/1/bin", "best/1/bin", "current-to-best/1/bin"]
 

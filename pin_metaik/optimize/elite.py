@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pin_metaik.optimize.space import Array
+from pin_metaik.arrays import Array
 
 
 class Elite:

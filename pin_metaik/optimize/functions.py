@@ -12,9 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.arrays import Array
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.lookup import lookup
 from pin_metaik.optimize.settings import whole
-from pin_metaik.optimize.space import Array, Box
+from pin_metaik.optimize.space import Box
 
 
 def sphere(Z: Array) -> Array:
@@ -84,10 +86,8 @@ def shifted(name: str, dimension: int, shift: ArrayLike | None = None) -> Shifte
         UnknownName: No function of that name.
         InvalidSetting: A dimension below 1, or a shift that leaves the box.
     """
-    if name not in FUNCTIONS:
-        raise UnknownName("test function", name, FUNCTIONS)
+    _, half = lookup("test function", name, FUNCTIONS)
     whole("dimension", dimension, 1)
-    _, half = FUNCTIONS[name]
     box = Box(np.full(dimension, -half), np.full(dimension, half))
     if shift is None:
         shift = 0.5 * half * np.cos(np.arange(2, dimension + 2))

@@ -8,10 +8,10 @@ from typing import Literal
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.optimize.pick import Indices
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import one_of, whole, within
-from pin_metaik.optimize.space import Array
 
 Selection = Literal["roulette", "tournament"]
 Crossover = Literal["one-point", "blend"]

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import whole
-from pin_metaik.optimize.space import Array
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ import math
 from collections.abc import Generator
 from dataclasses import dataclass
 
+from pin_metaik.arrays import Array
 from pin_metaik.optimize.gwo import hunt
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import whole
-from pin_metaik.optimize.space import Array
 
 
 @dataclass(frozen=True)

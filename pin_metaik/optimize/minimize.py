@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidBudget
-from pin_metaik.interrupts import Interrupted
 from pin_metaik.optimize.asktell import AskTell, Status
 from pin_metaik.optimize.budget import Budget
 from pin_metaik.optimize.search import Metaheuristic
-from pin_metaik.optimize.space import Array, Box
+from pin_metaik.optimize.space import Box
+from pin_metaik.watching import Progress, Watch, ended, tell
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +55,7 @@ def minimize(
     *,
     seeds: ArrayLike | None = None,
     trace: bool = False,
-    callback: Callable[[AskTell], bool | None] | None = None,
+    watch: Watch | None = None,
     keep: int = 1,
 ) -> Result:
     """Search the box for a point of least cost.
@@ -67,9 +68,11 @@ def minimize(
         algorithm: A name of the registry or an object with a `search` method.
         budget: When to stop; needs `evaluations` or `seconds`.
         rng: Seed or generator: the same seed gives the same answer bit for bit, unless the budget is in seconds.
+            ``None`` is a fixed seed.
         seeds: Points to start from (s, n) or (n,), clipped to the box. An algorithm uses as many as it has agents.
         trace: Whether to record the best cost after every generation.
-        callback: Called after every generation with the running search; returning True ends it as interrupted.
+        watch: Called after every generation with evaluations done and in all, and the best cost; True ends it as
+            interrupted.
         keep: How many of the best points to return in `Result.elite`.
 
     Raises:
@@ -87,13 +90,13 @@ def minimize(
             search.tell(objective(search.ask()))
             if trace:
                 history.append((search.run.evaluations, search.elite.costs[0]))
-            if callback is not None and callback(search):
-                search.stop()
-    except KeyboardInterrupt:
+            if watch is not None:
+                tell(watch, Progress(search.run.evaluations, budget.evaluations or 0, float(search.elite.costs[0])))
+    except KeyboardInterrupt as stop:
         if search.generations == 0:
             raise
         search.stop()
-        raise Interrupted(_result(search, history if trace else None)) from None
+        return ended(stop, _result(search, history if trace else None))
     return _result(search, history if trace else None)
 
 

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arrays import Array
 from pin_metaik.optimize.pick import below, others
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import whole, within
-from pin_metaik.optimize.space import Array
 
 R, L, G = range(3)  # the trial-vector producers: representative, local random, global best history
 SHARES = {R: (0.6, 0.2, 0.2), L: (0.2, 0.6, 0.2), G: (0.4, 0.4, 0.2)}  # of the population, by winner (16, 17)
@@ -87,8 +87,7 @@ class MTDE:
                 better = np.flatnonzero(wins)
                 if len(better):
                     mu_f = lehmer_mean(F[better, 0], f[better] - costs[better], mu_f)
-                    archive[(archived + np.arange(len(better))) % N] = X[better]
-                    archived += len(better)
+                    archived = remember(archive, archived, X[better])
                     X[better], f[better] = U[better], costs[better]
                     if f.min() < best:
                         history, best = np.concatenate((X[[f.argmin()]], history[: N - 1])), f.min()
@@ -100,6 +99,12 @@ def deal(count: int, winner: int) -> tuple[slice, slice, slice]:
     share_R, share_L, _ = SHARES[winner]
     end_R, end_L = round(share_R * count), round((share_R + share_L) * count)
     return slice(0, end_R), slice(end_R, end_L), slice(end_L, count)
+
+
+def remember(archive: Array, archived: int, losers: Array) -> int:
+    """Write losers (k, n) over the oldest of the archive (N, n), a ring; returns how many there have been in all."""
+    archive[(archived + np.arange(len(losers))) % len(archive)] = losers
+    return archived + len(losers)
 
 
 def representative(x: Array, f: Array, F: Array, x_Upop: Array, a1: float) -> Array:

@@ -8,9 +8,9 @@ from typing import Literal
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.optimize.search import Search
 from pin_metaik.optimize.settings import one_of, positive, whole, within
-from pin_metaik.optimize.space import Array
 
 Variant = Literal["constriction", "inertia", "literal"]
 ATTRACTION: dict[Variant, float] = {"constriction": 2.05, "inertia": 2.0, "literal": 2.05}  # c1 and c2 of the papers

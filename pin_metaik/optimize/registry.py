@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.lookup import lookup
 from pin_metaik.optimize.cmaes import CMAES
 from pin_metaik.optimize.de import DE
 from pin_metaik.optimize.ga import GA
@@ -35,9 +36,7 @@ def make(algorithm: str | Metaheuristic) -> Metaheuristic:
         InvalidSetting: Neither a name nor an object with a method `search`.
     """
     if isinstance(algorithm, str):
-        if algorithm not in ALGORITHMS:
-            raise UnknownName("metaheuristic", algorithm, ALGORITHMS)
-        return ALGORITHMS[algorithm]()
+        return lookup("metaheuristic", algorithm, ALGORITHMS)()
     if isinstance(algorithm, type) or not isinstance(algorithm, Metaheuristic):
         raise InvalidSetting(f"not a metaheuristic: {algorithm!r}; give a name or an object with a method search(run)")
     return algorithm

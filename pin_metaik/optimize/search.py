@@ -8,9 +8,10 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.optimize.budget import Budget
 from pin_metaik.optimize.settings import few
-from pin_metaik.optimize.space import Array, Box
+from pin_metaik.optimize.space import Box
 
 
 class Search:

@@ -8,15 +8,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, instance
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidBounds
 from pin_metaik.optimize.settings import MANY, few
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, init=False)
 class Box:
-    """The points ``lower <= x <= upper``, coordinate by coordinate.
+    """The box of a search: the points ``lower <= x <= upper``, coordinate by coordinate.
+
+    It has any number of dimensions and is nothing solid; that is ``collision.Box``.
 
     A coordinate with ``lower == upper`` is fixed; every algorithm copes with that.
 

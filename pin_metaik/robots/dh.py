@@ -7,12 +7,12 @@ from math import inf, isfinite
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked, checked_as
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidConfiguration, InvalidTable
 
-Array = NDArray[np.float64]
 Convention = Literal["standard", "modified"]
 JointType = Literal["revolute", "continuous", "prismatic"]
 

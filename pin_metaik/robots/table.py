@@ -28,20 +28,20 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable, Mapping
-from difflib import get_close_matches
 from math import inf, isfinite, pi, radians
 from numbers import Real
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from pin_metaik.arguments import checked_as
-from pin_metaik.errors import InvalidTable, UnknownName
-from pin_metaik.robots.dh import DHRow, DHTable, JointType, Placement
+from pin_metaik.errors import InvalidTable, UnknownName, meant
+from pin_metaik.files import known_keys
+from pin_metaik.robots.dh import Convention, DHRow, DHTable, JointType, Placement
 from pin_metaik.said import warn
+from pin_metaik.toml import Table, read_toml
+from pin_metaik.units import LENGTHS
 
-LENGTHS = {"m": 1.0, "cm": 100.0, "mm": 1000.0}  # units in a metre
 ANGLES: dict[str, Callable[[float], float]] = {"rad": float, "deg": radians}
 
 _TOP = ("name", "convention", "length", "angle", "joint")
@@ -62,15 +62,7 @@ def read_table(path: str | Path, parameters: Mapping[str, float] | None = None) 
         InvalidTable: If the file is missing or makes no sense; the message names file, joint and key.
         UnknownName: If the table has no such parameter.
     """
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-        content = tomllib.loads(text)
-    except OSError as error:
-        raise InvalidTable(f"cannot read {path}: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise InvalidTable(f"{path} is not TOML: it is not UTF-8 text") from None
-    except tomllib.TOMLDecodeError as error:
-        raise InvalidTable(f"{path} is not TOML: {error}") from None
+    content = read_toml(Path(path))
     if not content:
         raise InvalidTable(f"{path} is empty: a DH table needs {', '.join(_TOP)}")
     return _Reader(str(path), content, parameters or {}).table()
@@ -81,18 +73,18 @@ class _Reader:
 
     def __init__(self, path: str, content: dict[str, Any], replaced: Mapping[str, float]) -> None:
         self.path, self.content = path, content
-        self.known(content, _TOP, _TOP_OPTIONAL, self.path)
-        for key in ("name", "convention", "length", "angle", "description", "source"):
-            if not isinstance(content.get(key, ""), str):
-                raise InvalidTable(f"{path}: {key} = {content[key]!r} is not text")
-        self.metre = LENGTHS[self.unit("length", LENGTHS)]
-        self.radian = ANGLES[self.unit("angle", ANGLES)]
+        self.top = Table(content, path, _TOP, _TOP_OPTIONAL)
+        self.name, self.convention, self.description, self.source = (
+            self.top.text(key) for key in ("name", "convention", "description", "source")
+        )
+        self.metre = float(1 / self.top.one_of("length", LENGTHS).factor)  # units in a metre
+        self.radian = self.top.one_of("angle", ANGLES)
         own = content.get("parameters", {})
         if not isinstance(own, dict):
             raise InvalidTable(f"{path}: parameters is not a table [parameters] of names and numbers")
         for name in replaced:
             if name not in own:
-                raise UnknownName(f"parameter of {content['name']}", name, own)
+                raise UnknownName(f"parameter of {self.name}", name, own)
         self.parameters: dict[str, float] = {}
         self.used: set[str] = set()
         for name, value in {**own, **replaced}.items():
@@ -107,17 +99,23 @@ class _Reader:
         base, tool = self.placement("base"), self.placement("tool")
         if idle := self.parameters.keys() - self.used:
             warn(f"{self.path}: no row uses the parameters {', '.join(sorted(idle))}")
-        description, source = (self.content.get(key, "").strip() for key in ("description", "source"))
         try:
-            return DHTable(self.content["name"], self.content["convention"], rows, base, tool, description, source)
+            return DHTable(
+                self.name,
+                cast(Convention, self.convention),
+                rows,
+                base,
+                tool,
+                self.description.strip(),
+                self.source.strip(),
+            )
         except InvalidTable as error:
             raise InvalidTable(f"{self.path}: {error}") from None
 
     def row(self, joint: dict[str, Any], number: int) -> DHRow:
         """One ``[[joint]]``."""
         place = f"{self.path}: joint {number}"
-        self.known(joint, _JOINT, _JOINT_OPTIONAL, place)
-        self.sense(joint, place)
+        self.sense(Table(joint, place, _JOINT, _JOINT_OPTIONAL))
         prismatic = joint.get("type") == "prismatic"
 
         def length(key: str) -> float:
@@ -144,12 +142,11 @@ class _Reader:
         except InvalidTable as error:
             raise InvalidTable(f"{place}: {error}") from None
 
-    def sense(self, joint: dict[str, Any], place: str) -> None:
+    def sense(self, joint: Table) -> None:
         """Complain about keys that are of the wrong kind, contradict each other, or lack their companion."""
-        for key in ("name", "type"):
-            if not isinstance(joint.get(key, ""), str):
-                raise InvalidTable(f"{place}: {key} = {joint[key]!r} is not text")
-        kind = joint.get("type", "revolute")
+        place = joint.place
+        joint.text("name")
+        kind = joint.text("type", "revolute")
         if kind not in ("revolute", "prismatic"):
             raise InvalidTable(f"{place}: type = {kind!r} is neither revolute nor prismatic")
         variable, fixed = ("d", "theta") if kind == "prismatic" else ("theta", "d")
@@ -159,9 +156,7 @@ class _Reader:
             )
         if fixed not in joint:
             raise InvalidTable(f"{place}: {fixed} is missing")
-        continuous = joint.get("continuous", False)
-        if not isinstance(continuous, bool):
-            raise InvalidTable(f"{place}: continuous = {continuous!r} is neither true nor false")
+        continuous = "continuous" in joint and joint.flag("continuous")
         if continuous and kind == "prismatic":
             raise InvalidTable(f"{place}: a prismatic joint cannot be continuous; give it limits")
         if continuous and "limits" in joint:
@@ -176,7 +171,7 @@ class _Reader:
         place = f"{self.path}: {key}"
         if not isinstance(content, dict):
             raise InvalidTable(f"{place} is not a table [{key}] with xyz and rpy")
-        self.known(content, (), ("xyz", "rpy"), place)
+        known_keys(content, place, InvalidTable, (), ("xyz", "rpy"))
         x, y, z = (v / self.metre for v in self.numbers(content.get("xyz", [0, 0, 0]), 3, f"{place}: xyz"))
         roll, pitch, yaw = (self.radian(v) for v in self.numbers(content.get("rpy", [0, 0, 0]), 3, f"{place}: rpy"))
         return Placement((x, y, z), (roll, pitch, yaw))
@@ -186,9 +181,9 @@ class _Reader:
         if isinstance(value, str):
             name = value.removeprefix("-").strip()
             if name not in self.parameters:
-                near = get_close_matches(name, self.parameters, n=1)
-                hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(self.parameters) or 'none'}"
-                raise InvalidTable(f"{place} = {value!r} is neither a number nor a parameter; {hint}")
+                raise InvalidTable(
+                    f"{place} = {value!r} is neither a number nor a parameter; {meant(name, self.parameters)}"
+                )
             self.used.add(name)
             return -self.parameters[name] if value.startswith("-") else self.parameters[name]
         if isinstance(value, bool) or not isinstance(value, Real):
@@ -202,22 +197,3 @@ class _Reader:
         if not isinstance(value, list) or len(value) != count:
             raise InvalidTable(f"{place} = {value!r} is not a list of {count} numbers")
         return [self.number(v, place) for v in value]
-
-    def unit(self, key: str, units: Mapping[str, object]) -> str:
-        """The name of a unit, one of those there are."""
-        name: str = self.content[key]
-        if name not in units:
-            raise InvalidTable(f"{self.path}: {key} = {name!r} is none of the units {', '.join(units)}")
-        return name
-
-    def known(self, content: Mapping[str, Any], needed: tuple[str, ...], optional: tuple[str, ...], place: str) -> None:
-        """Complain about keys nobody knows, then about missing ones."""
-        allowed = (*needed, *optional)
-        for key in content:
-            if key not in allowed:
-                near = get_close_matches(key, allowed, n=1)
-                hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(allowed)}"
-                raise InvalidTable(f"{place}: unknown key {key!r}; {hint}")
-        for key in needed:
-            if key not in content:
-                raise InvalidTable(f"{place}: {key} is missing")

@@ -40,7 +40,6 @@ from pin_metaik.stewart.platform.states import PoseState
 from pin_metaik.stewart.show.curves import draw_history, draw_motion
 from pin_metaik.stewart.show.figures import save_picture
 from pin_metaik.stewart.show.picture import draw, draw_above, draw_into
-from pin_metaik.stewart.show.progress import progress_bar
 from pin_metaik.stewart.synthesis.design import Designed, design
 from pin_metaik.stewart.synthesis.fitness import Fitness, Score
 from pin_metaik.stewart.synthesis.type_designs import TypeDesign, compare_types, new_mechanism, new_servo_mechanism
@@ -105,7 +104,6 @@ __all__ = [
     "new_mechanism",
     "new_servo_mechanism",
     "pose_at",
-    "progress_bar",
     "read_mechanism",
     "read_trajectory",
     "save_mechanism",

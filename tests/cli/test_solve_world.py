@@ -30,7 +30,7 @@ def test_a_scene_is_avoided_and_what_collides_is_named(tmp_path: Path) -> None:
     ("words", "says"),
     [
         (("--world", "kitchen"), "known: narrow_box, shelf, table"),
-        (("--world", "kitchen.toml"), "cannot read the scene kitchen.toml"),
+        (("--world", "kitchen.toml"), "cannot read kitchen.toml"),
         (("--margin", "0.1"), "give --world"),
         (("--world", "table", "--margin", "-1"), "margin"),
     ],

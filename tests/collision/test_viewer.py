@@ -44,7 +44,7 @@ def test_a_viewer_shows_robot_obstacles_and_what_is_held(world: CollisionWorld) 
 
 
 def test_without_the_extra_it_says_what_to_install(world: CollisionWorld, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(viewer, "find_spec", lambda name: None)
+    monkeypatch.setattr("pin_metaik.lookup.find_spec", lambda name: None)
     with pytest.raises(MissingExtra, match=r"\[viewer\]"):
         viewer.open_viewer(world)
 

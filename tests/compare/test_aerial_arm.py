@@ -43,7 +43,7 @@ def test_the_printed_poses_give_the_printed_J():
 def test_the_printed_pose_of_row_1_gives_its_total_error_and_that_of_row_2_does_not():
     assert_allclose(total_error(ROW_1), ROWS[1].total, atol=1e-2)
     assert_allclose(total_error(ROW_2), 12.399, atol=1e-3)
-    assert ROWS[2].total == 12.08
+    assert abs(total_error(ROW_2) - ROWS[2].total) > 0.3
 
 
 def test_other_weights_and_radians_do_not_give_the_printed_J():

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import pin_metaik as mik
 from pin_metaik.collision import Obstacle, Sphere
 from pin_metaik.compare import CASES, Answer, Attempt, Case, Task
-from pin_metaik.compare.case import NoTask, travel
+from pin_metaik.compare.case import NoTask
 from pin_metaik.compare.cases.jacobians import jacobians
 
 ROBOTS = ["panda", "ur5", "rv7fl", "kinova", "pr2"]
@@ -175,7 +175,7 @@ def test_a_jump_on_a_path_is_a_failure_and_a_whole_turn_of_a_continuous_joint_is
     jumped[10] += 0.2
     assert case.judge(task, attempt(task, turned))
     assert not case.judge(task, attempt(task, jumped))
-    assert np.abs(travel(task.chain, task.planted[:-1], task.planted[1:])).max() <= 0.0501
+    assert np.abs(task.chain.limits.way(task.planted[:-1], task.planted[1:])).max() <= 0.0501
 
 
 def test_in_the_shelf_an_answer_that_collides_is_none() -> None:

@@ -1,6 +1,7 @@
 import pytest
 from rich.console import Console
 
+from pin_metaik.cli.progress import progress_bar
 from pin_metaik.compare.papers import PAPERS, Job, Options, Paper, reproduce
 from pin_metaik.compare.report import Column, Section, Table
 
@@ -57,8 +58,15 @@ def test_an_error_of_a_job_is_not_taken_for_an_interrupt():
 
 def test_the_progress_bar_shows_on_the_console_that_is_given():
     console = Console(record=True, force_terminal=True, width=80)
-    reproduce(counting(lambda: 1), Options(1), console)
+    with progress_bar("working", console) as watch:
+        reproduce(counting(lambda: 1), Options(1), watch)
     assert "counting" in console.export_text()
+
+
+def test_a_watch_ends_an_experiment_which_reports_on_what_is_done():
+    again = reproduce(counting(lambda: 1, lambda: 2, lambda: 3), Options(1), lambda at: at.done >= 2)
+    assert again.partial
+    assert again.done == 2
 
 
 def test_the_same_key_gives_the_same_numbers_and_another_seed_others():

@@ -9,7 +9,6 @@ from pin_metaik import cli
 from pin_metaik.compare.lock import locked
 from pin_metaik.compare.papers import aerial_arm
 from pin_metaik.compare.papers.arm import Trial
-from pin_metaik.compare.report import write as writing
 from pin_metaik.errors import CannotWrite, InvalidSetting
 
 
@@ -121,7 +120,7 @@ def test_an_unknown_paper_is_named_with_those_there_are(monkeypatch, capsys):
 
 
 def test_without_matplotlib_figures_are_refused_before_anything_is_run(tmp_path, monkeypatch):
-    monkeypatch.setattr(writing, "find_spec", lambda name: None)
+    monkeypatch.setattr("pin_metaik.lookup.find_spec", lambda name: None)
     refused = command("rv7fl", "--out", tmp_path)
     assert "drawing figures needs an optional dependency" in str(refused.exception)
     assert command("puma_offset", "--runs", 1, "--out", tmp_path, "--no-figures").exit_code == 0

@@ -186,7 +186,7 @@ def test_what_makes_no_sense_is_said_before_anything_runs(call: object, error: t
 
 
 def test_peers_that_are_missing_are_told_before_anything_runs(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pin_metaik.compare.methods.peers.peer.find_spec", lambda name: None)
+    monkeypatch.setattr("pin_metaik.lookup.find_spec", lambda name: None)
     with pytest.raises(MissingExtra, match="peers"):
         Suite(("ur5",), ("path",), ("ikpy",))
     assert "ikpy" in KNOWN

@@ -30,11 +30,11 @@ def test_the_tip_depends_on_the_first_three_joints_only():
     assert np.ptp(case.objective(X)) < 1e-9  # mm
 
 
-def test_every_result_is_printed_at_the_budgets_of_the_paper():
+def test_data_every_result_is_printed_at_the_budgets_of_the_paper():
     assert set(PRINTED) == {(case, m, budget[m]) for case in TARGETS for m in METHODS for budget in (SHORT, LONG)}
 
 
-def test_the_printed_times_are_one_time_an_evaluation_only_if_iterations_are_not_the_same_for_all():
+def test_data_the_printed_times_are_one_time_an_evaluation_only_if_iterations_are_not_the_same_for_all():
     each = [PRINTED[case, m, LONG[m]].seconds / LONG[m] for case in TARGETS for m in METHODS]
     assert 20e-6 < min(each) < max(each) < 31e-6  # s
 

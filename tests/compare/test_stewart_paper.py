@@ -69,7 +69,7 @@ def test_the_command_says_what_is_and_what_is_not_reproduced(coarse, tmp_path):
 
 def test_an_interrupted_job_is_no_result(coarse, monkeypatch):
     def interrupted(mechanism, rng):
-        def press(done, total):
+        def press(at):
             raise KeyboardInterrupt
 
         return stewart.design(mechanism, rng=rng, watch=press)

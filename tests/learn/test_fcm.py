@@ -86,12 +86,12 @@ def test_the_same_seed_gives_the_same_centres_and_a_run_can_go_on():
 
 
 def test_ctrl_c_goes_through_with_the_centres_so_far():
-    def stop(iteration, J):
-        if iteration == 3:
+    def stop(at):
+        if at.done == 3:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt) as press:
-        fuzzy_c_means(np.random.default_rng(0).random((100, 2)), 5, callback=stop)
+        fuzzy_c_means(np.random.default_rng(0).random((100, 2)), 5, watch=stop)
     found = press.value.result
     assert found.interrupted
     assert len(found.objective) == 3

@@ -1,5 +1,3 @@
-import time
-
 import numpy as np
 import pytest
 
@@ -32,12 +30,12 @@ def test_every_trainer_learns_and_repeats_itself(trainer):
 def test_ctrl_c_goes_through_with_the_best_weights_so_far(trainer):
     X, y = wave()
 
-    def stop(iteration, mse):
-        if iteration == 20:
+    def stop(at):
+        if at.done == 20:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt) as press:
-        fit(X, y, (5,), trainer, 500, callback=stop)
+        fit(X, y, (5,), trainer, 500, watch=stop)
     model = press.value.result
     assert model.training.interrupted
     assert model.training.iterations == 20
@@ -58,15 +56,6 @@ def test_levenberg_marquardt_beats_rprop_tenfold_on_the_turn(seed):
     X, y = np.column_stack((v, theta)), v * lead_time(theta, NOMAD_200)
     lm, rprop = (fit(X, y, (5, 5), trainer, 200, seed).training for trainer in ("lm", "rprop"))
     assert lm.mse * 10 <= rprop.mse
-
-
-def test_three_thousand_iterations_of_levenberg_marquardt_would_take_less_than_15_s():
-    v, theta = coarse_grid(NOMAD_200).T
-    X, y = np.column_stack((v, theta)), v * lead_time(theta, NOMAD_200)
-    fit(X, y, (5, 5), "lm", 5)
-    began = time.process_time()
-    training = fit(X, y, (5, 5), "lm", 200).training
-    assert (time.process_time() - began) / training.iterations * 3000 < 15
 
 
 def test_a_network_asked_outside_its_training_range_warns_and_stays_finite():

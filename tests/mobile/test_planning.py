@@ -102,12 +102,12 @@ def test_a_search_keeps_the_robots_clearance():
 
 
 def test_ctrl_c_goes_through_with_the_best_plan_so_far():
-    def stop(search):
-        if search.run.evaluations >= 500:
+    def stop(at):
+        if at.done >= 500:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt) as press:
-        plan_path(load_scene("ten_obstacles"), "pso", callback=stop)
+        plan_path(load_scene("ten_obstacles"), "pso", watch=stop)
     plan = press.value.result
     assert plan.interrupted
     assert 500 <= plan.evaluations < 5000

@@ -166,12 +166,15 @@ def test_the_fastest_path_names_what_blocks_it():
 
 
 def test_an_interrupted_search_is_driven_with_its_best():
-    def stop(search):
-        if search.generations == 5:
+    heard = []
+
+    def stop(at):
+        heard.append(at)
+        if len(heard) == 5:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt) as press:
-        plan_trajectory(B, method="de", callback=stop)
+        plan_trajectory(B, method="de", watch=stop)
     plan = press.value.result
     assert plan.interrupted
     assert plan.success

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from pin_metaik.compare.papers.rv7fl_setup import TARGETS
 from pin_metaik.optimize import Box
 
 TABLE = [
@@ -16,7 +17,6 @@ TABLE = [
 ]  # standard DH: d, a, alpha in deg
 LIMITS = np.deg2rad([(-240, 240), (-110, 130), (0, 162), (-200, 200), (-120, 120), (-360, 360)])
 BOX = Box(*LIMITS.T)
-TARGETS = {1: (35.0, -905.0, 400.0), 2: (639.25, -645.94, 400.79), 3: (-50.0, -905.0, 315.0)}
 
 
 def tip(Q):
@@ -31,5 +31,5 @@ def tip(Q):
 
 def miss(case: int):
     """The paper's F (Eq. 27) for one of its cases: distance of the tip to the target, in mm."""
-    target = np.array(TARGETS[case])
+    target = np.array(TARGETS[f"Case {case}"])
     return lambda Q: np.linalg.norm(tip(Q) - target, axis=1)

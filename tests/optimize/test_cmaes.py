@@ -9,7 +9,7 @@ from pin_metaik.optimize.functions import shifted
 
 
 def test_without_its_package_it_names_the_extra(monkeypatch):
-    monkeypatch.setattr(cmaes, "find_spec", lambda name: None)
+    monkeypatch.setattr("pin_metaik.lookup.find_spec", lambda name: None)
     with pytest.raises(MissingExtra, match=r"pip install .*\[cma\]'"):
         make("cmaes")
 

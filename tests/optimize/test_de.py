@@ -72,10 +72,10 @@ def test_a_rand_1_mutant_is_a_base_and_a_difference_of_three_others():
 
 @pytest.mark.parametrize("strategy", STRATEGIES)
 def test_a_trial_replaces_its_own_parent_only_and_only_if_it_is_no_worse(strategy):
-    search = AskTell(BOX, DE(6, strategy=strategy))
+    search = AskTell(BOX, DE(6, CR=0.0, strategy=strategy))  # a trial has one coordinate that is not its parent's
     X = search.ask()
     search.tell(np.full(6, 5.0))
     U = search.ask()
     search.tell([4.0, 6.0, 5.0, 6.0, 6.0, 4.0])
-    population = search._generator.gi_frame.f_locals["X"]
-    assert np.array_equal(population, np.where(np.array([1, 0, 1, 0, 0, 1])[:, None], U, X))
+    parents = np.where(np.array([1, 0, 1, 0, 0, 1])[:, None], U, X)
+    assert ((search.ask() == parents).sum(axis=1) >= BOX.dimension - 1).all()

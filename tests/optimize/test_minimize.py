@@ -128,14 +128,15 @@ def test_ctrl_c_before_there_is_a_best_goes_through():
         minimize(impatient, BOX, "gwo", Budget(1000))
 
 
-def test_a_callback_sees_every_generation_and_may_stop():
+def test_a_watch_sees_every_generation_and_may_stop():
     seen = []
 
-    def callback(search):
-        seen.append((search.run.evaluations, search.best.cost))
-        return search.generations == 4
+    def watch(at):
+        assert at.total == 1000
+        seen.append((at.done, at.best))
+        return len(seen) == 4
 
-    result = minimize(sphere, BOX, "gwo", Budget(1000), trace=True, callback=callback)
+    result = minimize(sphere, BOX, "gwo", Budget(1000), trace=True, watch=watch)
     assert result.status is Status.INTERRUPTED
     assert np.array_equal(result.trace, seen)
     assert result.trace[-1].tolist() == [120, result.cost]

@@ -42,7 +42,7 @@ def test_a_frog_that_did_not_improve_leaps_towards_the_best_of_all_and_then_anyw
     f = np.square(X).sum(axis=1)
     search.tell(f)
     first, second, third = (memeplex[-1] for memeplex in dealt(X, f, 3))
-    search.ask()
+    leaps = search.ask()
     search.tell([np.inf, f.min() + 1e-9, np.inf])  # the second frog improves and is done
     towards_best = search.ask()
     assert len(towards_best) == 2
@@ -53,10 +53,12 @@ def test_a_frog_that_did_not_improve_leaps_towards_the_best_of_all_and_then_anyw
     assert len(anywhere) == 1
     assert not between(anywhere[0], first, X[f.argmin()], 1.3)
     search.tell([np.inf])  # the random frog stays whatever it costs
-    population = search._generator.gi_frame.f_locals["X"]
-    assert (population == anywhere).all(axis=1).any()
-    assert not (population == first).all(axis=1).any()
-    assert not (population == second).all(axis=1).any()
+    leaders = [memeplex[0] for memeplex in dealt(X, f, 3)]
+    again = search.ask()
+    assert between(again[0], anywhere[0], leaders[0], 1.3)
+    assert not between(again[0], first, leaders[0], 1.3)
+    assert between(again[1], dealt(X, f, 3)[1][-2], leaps[1], 1.3)  # the second leads its memeplex from where it leapt
+    assert not between(again[1], dealt(X, f, 3)[1][-2], second, 1.3)
 
 
 def test_without_fallbacks_a_frog_waits_for_a_better_leap():
@@ -85,11 +87,24 @@ def test_no_leap_is_longer_than_the_largest():
 
 def test_memeplexes_are_shuffled_after_their_leaps():
     search = AskTell(BOX, SFLA(12, 3, leaps=5, fallbacks=False))
-    for _ in range(1 + 5):
-        search.tell(np.square(search.ask()).sum(axis=1))
-    shuffled = search._generator.gi_frame.f_locals
-    assert (np.diff(shuffled["f"]) >= 0).all()  # sorted anew and dealt round
-    assert np.array_equal(shuffled["best"], [0, 1, 2])
+    X = search.ask()
+    f = np.square(X).sum(axis=1)
+    search.tell(f)
+    pond = [f.argsort(kind="stable")[j::3] for j in range(3)]
+    for _ in range(5):
+        leaps = search.ask()
+        costs = np.square(leaps).sum(axis=1)
+        search.tell(costs)
+        for frogs, x, cost in zip(pond, leaps, costs, strict=True):
+            worst = frogs[f[frogs].argmax()]
+            if cost < f[worst]:
+                X[worst], f[worst] = x, cost
+    shuffled = search.ask()
+    for x, memeplex in zip(shuffled, dealt(X, f, 3), strict=True):
+        assert between(x, memeplex[-1], memeplex[0], 1.3)
+    ends = [(frogs[f[frogs].argmax()], frogs[f[frogs].argmin()]) for frogs in pond]  # of the memeplexes before
+    unshuffled = [between(x, X[worst], X[best], 1.3) for (worst, best), x in zip(ends, shuffled, strict=True)]
+    assert not all(unshuffled)
 
 
 @pytest.mark.parametrize("frogs", [12, 13, 14])

@@ -182,8 +182,8 @@ def test_an_interrupted_design_is_kept_and_says_so(tmp_path, monkeypatch):
     whole = stewart.design
 
     def interrupted(mechanism, watch):
-        def press(done, total):
-            if done >= 120:
+        def press(at):
+            if at.done >= 120:
                 raise KeyboardInterrupt
 
         return whole(mechanism, watch=press)
@@ -197,8 +197,8 @@ def test_an_interrupted_design_is_kept_and_says_so(tmp_path, monkeypatch):
 
 def test_an_interrupted_survey_is_shown_and_says_so(monkeypatch):
     def survey(mechanism, watch):
-        def press(done, total):
-            if done > total / 2:
+        def press(at):
+            if at.done > at.total / 2:
                 raise KeyboardInterrupt
 
         return stewart.survey(mechanism.geometry, mechanism.limits, mechanism.grid, watch=press)

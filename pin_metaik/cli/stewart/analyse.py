@@ -10,6 +10,7 @@ import typer
 
 from pin_metaik import stewart
 from pin_metaik.cli.codes import INTERRUPTED
+from pin_metaik.cli.progress import progress_bar
 from pin_metaik.cli.stewart.common import (
     Cells,
     File,
@@ -66,7 +67,7 @@ def analyse(
     if to is not None and T is None:
         raise InvalidTarget("a way needs both ends: give --pose as well as --to")
     way = None if to is None or T is None else stewart.straight(T, pose_of(mechanism, to), seconds)
-    with stewart.progress_bar("surveying") as watch:
+    with progress_bar("surveying") as watch:
         workspace = kept(lambda: mechanism.survey(watch=watch))
     if points is not None:
         stewart.save_points(workspace, points, mechanism.metres)

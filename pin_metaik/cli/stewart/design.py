@@ -11,6 +11,7 @@ import typer
 
 from pin_metaik import stewart
 from pin_metaik.cli.codes import INTERRUPTED
+from pin_metaik.cli.progress import progress_bar
 from pin_metaik.cli.settings import configured
 from pin_metaik.cli.stewart.common import (
     INDICES,
@@ -79,7 +80,7 @@ def design(
             changed["grid"] = replace(mechanism.task.grid, counts=(cells, cells, cells))
         mechanism = replace(mechanism, task=replace(mechanism.task, **changed))
     can_write(output, history, picture=picture)
-    with stewart.progress_bar("designing") as watch:
+    with progress_bar("designing") as watch:
         found = kept(lambda: stewart.design(mechanism, watch=watch))
     workspace = found.mechanism.survey() if found.success else None
     if history is not None:

@@ -9,9 +9,10 @@ from typing import Annotated
 import typer
 
 from pin_metaik import stewart
+from pin_metaik.cli.progress import progress_bar
 from pin_metaik.cli.stewart.common import File, can_write, show_lines, words
-from pin_metaik.stewart.mechanism.units import LENGTHS
 from pin_metaik.stewart.show.report import describe
+from pin_metaik.units import LENGTHS
 
 
 def show(
@@ -29,7 +30,7 @@ def show(
     if urdf is not None:
         stewart.save_urdf(mechanism, urdf)
     if output is not None:
-        with stewart.progress_bar("surveying") as watch:
+        with progress_bar("surveying") as watch:
             found = mechanism.survey(watch=watch) if workspace else None
         stewart.save_picture(stewart.draw(mechanism, found), output)
     if above is not None:

@@ -13,6 +13,7 @@ from rich.table import Table
 
 from pin_metaik import stewart
 from pin_metaik.cli.codes import INTERRUPTED
+from pin_metaik.cli.progress import progress_bar
 from pin_metaik.cli.stewart.common import File, Json
 from pin_metaik.cli.versions import print_json
 from pin_metaik.output import writable
@@ -39,7 +40,7 @@ def types(
         mechanism = replace(mechanism, task=replace(mechanism.task, evaluations=evaluations))
     if output is not None:
         writable(output, folder=True)
-    with stewart.progress_bar("designing") as watch:
+    with progress_bar("designing") as watch:
         found = stewart.compare_types(mechanism, names or None, runs, rng=rng, watch=watch)
     if output is not None:
         output.mkdir(parents=True, exist_ok=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pin_metaik.compare.case import Attempt, Case, Task, travel
+from pin_metaik.compare.case import Attempt, Case, Task
 from pin_metaik.kinematics import Chain
 
 FAR, SLACK = 0.6, 0.01  # of each joint, rad or m; and how much longer the way may be
@@ -20,7 +20,7 @@ def draw(chain: Chain, rng: np.random.Generator) -> Task:
 def near_enough(task: Task, attempt: Attempt) -> bool:
     """Whether the target is met no farther from the start than the configuration it was made from."""
     assert task.planted is not None
-    way, planted = travel(task.chain, attempt.x0, np.stack([attempt.X[0], task.planted[0]]))
+    way, planted = task.chain.limits.way(attempt.x0, np.stack([attempt.X[0], task.planted[0]]))
     return attempt.reached and bool(np.linalg.norm(way) <= (1.0 + SLACK) * np.linalg.norm(planted))
 
 

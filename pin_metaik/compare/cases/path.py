@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pin_metaik.compare.case import Attempt, Case, Task, travel
+from pin_metaik.compare.case import Attempt, Case, Task
 from pin_metaik.kinematics import Chain
 
 POSES, FAR, BOUND = 20, 1.0, 0.15  # of each joint from end to end, and from one pose to the next, rad or m
@@ -21,7 +21,7 @@ def draw(chain: Chain, rng: np.random.Generator) -> Task:
 def smooth(task: Task, attempt: Attempt) -> bool:
     """Whether every pose is met without a jump of a joint."""
     X = np.vstack([attempt.x0, attempt.X])
-    steps = travel(task.chain, X[:-1], X[1:])
+    steps = task.chain.limits.way(X[:-1], X[1:])
     return attempt.reached and bool((np.abs(steps) <= BOUND).all())
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pin_metaik.compare.method import Method
 from pin_metaik.compare.methods.peers import PEERS
 from pin_metaik.compare.methods.solvers import Default, Rounds, Search
-from pin_metaik.errors import UnknownName
 from pin_metaik.ik import REFINERS
+from pin_metaik.lookup import lookup
 from pin_metaik.optimize import ALGORITHMS
 
 METHODS: dict[str, Method] = {
@@ -32,9 +32,7 @@ def named(name: str) -> Method:
     size, _, refiner = rest.partition("+")
     if at and size.isdecimal() and seeder in ALGORITHMS and refiner in REFINERS:
         return Rounds(name, seeder, refiner, int(size))
-    if name not in METHODS:
-        raise UnknownName("method", name, METHODS)
-    return METHODS[name]
+    return lookup("method", name, METHODS)
 
 
 __all__ = ["METHODS", "Default", "Rounds", "Search", "named"]

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from time import process_time
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pin_metaik.arrays import Array
 from pin_metaik.compare.papers.paper import Job
 from pin_metaik.ik import IKProblem, IKSolver
 from pin_metaik.optimize import Budget, Metaheuristic, minimize
-
-Array = NDArray[np.float64]
 
 TRACE_POINTS = 200
 

@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.compare.papers import plots
 from pin_metaik.compare.papers.arm import Trial, of
 from pin_metaik.compare.report import Column, Figure, Table, Value
@@ -81,7 +82,7 @@ def convergence(name: str, caption: str, trials: Sequence[Trial], cost: str, flo
     longest: dict[tuple[str, str], int] = {}
     for case, method, budget in _groups([trial for trial in trials if trial.trace is not None]):
         longest[case, method] = max(budget, longest.get((case, method), 0))
-    panels: dict[str, dict[str, list[plots.Array]]] = {}
+    panels: dict[str, dict[str, list[Array]]] = {}
     for (case, method), budget in longest.items():
         runs = of(trials, case=case, method=method, budget=budget)
         panels.setdefault(case, {})[method] = [trial.trace for trial in runs if trial.trace is not None]

@@ -9,8 +9,8 @@ from time import process_time
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pin_metaik.arrays import Array
 from pin_metaik.optimize import Budget, Metaheuristic
 from pin_metaik.optimize.ga import GA
 from pin_metaik.optimize.pso import PSO
@@ -18,7 +18,6 @@ from pin_metaik.optimize.pso import PSO
 if TYPE_CHECKING:  # shapely is an extra
     from pin_metaik.mobile import PathProblem
 
-Array = NDArray[np.float64]
 
 ITERATIONS = 100
 REPEATS = 11  # of the exact planner, for its time

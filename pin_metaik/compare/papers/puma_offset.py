@@ -8,7 +8,8 @@ from functools import partial
 
 import numpy as np
 
-from pin_metaik.compare.papers.arm import ArmCase, Array, Trial, hybrid, of, search
+from pin_metaik.arrays import Array
+from pin_metaik.compare.papers.arm import ArmCase, Trial, hybrid, of, search
 from pin_metaik.compare.papers.arm_report import (
     SUMMARY,
     angles,

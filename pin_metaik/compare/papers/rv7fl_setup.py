@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pin_metaik.compare.papers.arm import ArmCase, Array
+from pin_metaik.arrays import Array
+from pin_metaik.compare.papers.arm import ArmCase
 from pin_metaik.ik import IKProblem, Target
 from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Metaheuristic

@@ -10,14 +10,13 @@ from time import perf_counter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pin_metaik.arrays import Array
 from pin_metaik.compare.papers.paper import Options
 
 if TYPE_CHECKING:  # shapely is an extra
     from pin_metaik.mobile import LearnedTurn
 
-Array = NDArray[np.float64]
 
 NETS = {"2:5:1": (5,), "2:5:5:1": (5, 5)}
 TRAINERS = {"lm": "Levenberg-Marquardt", "bfgs": "quasi-Newton", "rprop": "resilient", "scg": "scaled conj. gradient"}

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.arrays import Array
 from pin_metaik.compare.record import CaseRecord
 from pin_metaik.compare.report import figures
 from pin_metaik.compare.report.overview import SPENT, in_words, spent
@@ -15,8 +16,6 @@ from pin_metaik.compare.report.parts import Column, Figure, Section, Table, Valu
 from pin_metaik.compare.results import Results, summarise
 from pin_metaik.compare.statistics import Pair, friedman
 from pin_metaik.compare.trial import CURVE
-
-Array = NDArray[np.float64]
 
 
 def by_case(results: Results, case: CaseRecord) -> Section:

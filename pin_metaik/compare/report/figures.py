@@ -9,9 +9,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from pin_metaik.arrays import Array
 
 # Okabe and Ito, black first and their yellow left out: told apart by every eye. Grey, brown, violet if they run out.
 COLOURS = ("#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#8b4513", "#6a3d9a")

@@ -5,15 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pin_metaik.compare.cost import FK_WITH_JACOBIAN
 from pin_metaik.compare.report import figures
 from pin_metaik.compare.report.parts import Column, Figure, Section, Table, Value
 from pin_metaik.compare.results import Results, Summary, summarise
 from pin_metaik.compare.statistics import compare_pairs, ecdf, friedman
-
-Array = NDArray[np.float64]
 
 POINTS = 240  # of a distribution's drawing
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Sequence
-from importlib.util import find_spec
 from pathlib import Path
 
 from pin_metaik.compare.report.canvas import save
 from pin_metaik.compare.report.parts import Figure, Section, Table
-from pin_metaik.errors import MissingExtra
+from pin_metaik.lookup import need
 
 DPI = 150
 
@@ -20,8 +19,7 @@ def need_figures() -> None:
     Raises:
         MissingExtra: matplotlib is not installed.
     """
-    if find_spec("matplotlib") is None:
-        raise MissingExtra("drawing figures", "plots")
+    need("drawing figures", "plots", "matplotlib")
 
 
 def write(folder: Path, name: str, preamble: Sequence[str], sections: Sequence[Section], figures: bool) -> list[Path]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik.refine.dls import DLS
 from pin_metaik.ik.refine.iterate import Patience
 from pin_metaik.ik.refine.lm import LM
@@ -14,6 +14,7 @@ from pin_metaik.ik.refine.protocol import Refinement, Refiner
 from pin_metaik.ik.refine.qp import QP
 from pin_metaik.ik.refine.sdls import SDLS
 from pin_metaik.ik.refine.transpose import Transpose
+from pin_metaik.lookup import lookup
 
 REFINERS: dict[str, Callable[[], Refiner]] = {
     "dls": DLS,
@@ -51,9 +52,7 @@ def make_refiner(refiner: str | Refiner) -> Refiner:
         InvalidSetting: Neither a name nor an object with a method ``refine``.
     """
     if isinstance(refiner, str):
-        if refiner not in REFINERS:
-            raise UnknownName("refiner", refiner, REFINERS)
-        return REFINERS[refiner]()
+        return lookup("refiner", refiner, REFINERS)()
     if isinstance(refiner, type) or not isinstance(refiner, Refiner):
         raise InvalidSetting(f"not a refiner: {refiner!r}; give a name or an object with refine(problem, starts, ...)")
     return refiner

@@ -12,11 +12,10 @@ from importlib.util import find_spec
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pin_metaik.arrays import Array
 from pin_metaik.errors import UnknownName
 
-Array: TypeAlias = NDArray[np.float64]
 BoxQP: TypeAlias = Callable[[Array, Array, Array, Array], Array]
 """z (n,) from P (n, n), q (n,), lower (n,) and upper (n,); within the solver's tolerance, not finite when it failed."""
 RowQP: TypeAlias = Callable[[Array, Array, Array, Array, Array], Array]

@@ -7,16 +7,17 @@ from time import perf_counter
 import numpy as np
 
 from pin_metaik.arguments import array, checked
-from pin_metaik.errors import InvalidSetting, UnknownName
-from pin_metaik.interrupts import Interrupted
-from pin_metaik.learn.arrays import Array
+from pin_metaik.arrays import Array
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.learn.network import Network
 from pin_metaik.learn.trainers.bfgs import BFGS
 from pin_metaik.learn.trainers.levenberg import LevenbergMarquardt
 from pin_metaik.learn.trainers.minpack import Minpack
-from pin_metaik.learn.trainers.protocol import Callback, Finished, Record, Task, Trainer, Training
+from pin_metaik.learn.trainers.protocol import Finished, Record, Task, Trainer, Training
 from pin_metaik.learn.trainers.rprop import Rprop
 from pin_metaik.learn.trainers.scg import SCG
+from pin_metaik.lookup import lookup
+from pin_metaik.watching import Watch, ended
 
 TRAINERS: dict[str, type[Trainer]] = {
     "lm": LevenbergMarquardt,
@@ -36,9 +37,7 @@ def make_trainer(trainer: str | Trainer) -> Trainer:
     """
     if not isinstance(trainer, str):
         return trainer
-    if trainer not in TRAINERS:
-        raise UnknownName("trainer", trainer, TRAINERS)
-    return TRAINERS[trainer]()
+    return lookup("trainer", trainer, TRAINERS)()
 
 
 @checked
@@ -49,7 +48,7 @@ def train(
     y: Array,
     w: Array,
     iterations: int,
-    callback: Callback | None = None,
+    watch: Watch | None = None,
 ) -> Training:
     """Train a network from weights w.
 
@@ -60,7 +59,7 @@ def train(
         y: Outputs (n,), scaled.
         w: First weights (count,).
         iterations: At most.
-        callback: Called after every iteration with its number and the mean squared error.
+        watch: Called after every iteration with their number and the mean squared error; True ends the training.
 
     Raises:
         UnknownName: No trainer of that name.
@@ -75,7 +74,7 @@ def train(
     if len(X) < network.count:
         raise InvalidSetting(f"{len(X)} data are too few for the {network.count} weights of {network}")
     task = Task(network, X, y)
-    record = Record(w, task.loss(w)[0], iterations, callback)
+    record = Record(w, task.loss(w)[0], iterations, watch)
     began = perf_counter()
 
     def trained(converged: bool, interrupted: bool = False) -> Training:
@@ -86,8 +85,8 @@ def train(
         trainer.run(task, w, record, iterations)
     except Finished:
         return trained(converged=False)
-    except KeyboardInterrupt:
-        raise Interrupted(trained(converged=False, interrupted=True)) from None
+    except KeyboardInterrupt as stop:
+        return ended(stop, trained(converged=False, interrupted=True))
     return trained(converged=True)
 
 
@@ -95,7 +94,6 @@ __all__ = [
     "BFGS",
     "SCG",
     "TRAINERS",
-    "Callback",
     "LevenbergMarquardt",
     "Minpack",
     "Rprop",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from scipy.optimize import OptimizeResult, minimize
 
 from pin_metaik.arguments import checked
-from pin_metaik.learn.arrays import Array
+from pin_metaik.arrays import Array
 from pin_metaik.learn.trainers.protocol import Record, Task
 
 

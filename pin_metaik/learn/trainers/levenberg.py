@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.learn.arrays import Array
 from pin_metaik.learn.trainers.protocol import Record, Task
 
 HOPELESS = 1e12  # damping at which no step is left

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from pin_metaik.arguments import checked
-from pin_metaik.learn.arrays import Array
+from pin_metaik.arrays import Array
 from pin_metaik.learn.trainers.protocol import Record, Task
 
 EPSILON = float(np.finfo(float).eps)

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from pin_metaik.learn.arrays import Array
+from pin_metaik.arrays import Array
 from pin_metaik.learn.network import Network
-
-Callback = Callable[[int, float], object]
+from pin_metaik.watching import Progress, Watch, tell
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,22 +48,22 @@ class Record:
         trace: Error after every iteration.
     """
 
-    def __init__(self, w: Array, mse: float, iterations: int, callback: Callback | None) -> None:
+    def __init__(self, w: Array, mse: float, iterations: int, watch: Watch | None) -> None:
         self.w, self.mse = w.copy(), mse
         self.trace: list[float] = []
-        self._iterations, self._callback = iterations, callback
+        self._iterations, self._watch = iterations, watch
 
     def tell(self, w: Array, mse: float) -> None:
         """One more iteration led to weights w with this error.
 
         Raises:
             Finished: It was the last one allowed.
+            Stopped: The watch says so.
         """
         if mse < self.mse:
             self.w, self.mse = w.copy(), mse
         self.trace.append(mse)
-        if self._callback is not None:
-            self._callback(len(self.trace), mse)
+        tell(self._watch, Progress(len(self.trace), self._iterations, mse))
         if len(self.trace) >= self._iterations:
             raise Finished
 
@@ -84,7 +82,7 @@ class Training:
         iterations: Made.
         seconds: Taken, s.
         converged: Whether the trainer ended by itself, before its iterations were spent.
-        interrupted: Whether Ctrl-C ended it.
+        interrupted: Whether Ctrl-C or a watch ended it.
         trace: Error after every iteration (i,).
     """
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pin_metaik.arguments import checked
-from pin_metaik.learn.arrays import Array
+from pin_metaik.arrays import Array
 from pin_metaik.learn.trainers.protocol import Record, Task
 
 

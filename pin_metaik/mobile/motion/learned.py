@@ -14,15 +14,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, checked
-from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.arrays import Array
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import wrapped
 from pin_metaik.learn import OutsideTraining, Regressor, Trainer, fit
-from pin_metaik.learn.arrays import Array
+from pin_metaik.lookup import lookup
 from pin_metaik.mobile.motion.turn import lead_time
 from pin_metaik.mobile.motion.turn_data import coarse_grid, judging_points
 from pin_metaik.mobile.motion.turn_errors import TurnErrors, turn_errors
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
 from pin_metaik.said import warn
+from pin_metaik.watching import Watch
 
 DesignName = Literal["paper", "log"]
 
@@ -210,7 +212,7 @@ def learn_turn(
     iterations: int = 300,
     points: Array | None = None,
     rng: int | np.random.Generator | None = 0,
-    callback: Callable[[int, float], object] | None = None,
+    watch: Watch | None = None,
 ) -> LearnedTurn:
     """Train a network on exact tangent lengths.
 
@@ -222,23 +224,21 @@ def learn_turn(
         iterations: At most. Plans end millimetres off the goal after 300, tenths of one after 4,000.
         points: Speeds and angles (n, 2) in m/s and rad to learn from; default: the paper's grid. ``log`` leaves out
             angles below half a degree, whose logarithms run away.
-        rng: Seed or generator of the first weights.
-        callback: Called after every iteration.
+        rng: Seed or generator of the first weights; ``None`` is a fixed seed.
+        watch: Called after every iteration with their number and the error; True ends it.
 
     Raises:
         UnknownName: No such design or trainer.
         InvalidSetting: Too few points.
     """
-    if design not in DESIGNS:
-        raise UnknownName("design", design, DESIGNS)
+    use = lookup("design", design, DESIGNS)
     points = coarse_grid(vehicle) if points is None else array("points", points, "n", 2)
     if design == "log":
         points = points[points[:, 1] >= np.radians(0.5)]
     v, theta = points.T
-    use = DESIGNS[design]
     alpha = v * lead_time(theta, vehicle)
     angles, speeds = (float(theta.min()), float(theta.max())), (float(v.min()), float(v.max()))
     return wrapped(
-        lambda: fit(use.inputs(v, theta), use.output(alpha), hidden, trainer, iterations, rng, callback),
+        lambda: fit(use.inputs(v, theta), use.output(alpha), hidden, trainer, iterations, rng, watch),
         lambda regressor: LearnedTurn(vehicle, design, regressor, angles, speeds),
     )

@@ -10,10 +10,10 @@ import numpy as np
 import shapely
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.mobile.motion.learned import TurnReport
 from pin_metaik.mobile.motion.route import Route, keeps_clear
 from pin_metaik.mobile.motion.trajectory import SAMPLES, Trajectory
-from pin_metaik.optimize.space import Array
 
 Method = Literal["dp", "de", "ann"]
 

@@ -10,12 +10,12 @@ import numpy as np
 import shapely
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry, InvalidSetting
 from pin_metaik.mobile.motion.straight import straight_time
 from pin_metaik.mobile.motion.turn import lead_time, turn_shape, turn_time
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
 from pin_metaik.mobile.paths.path import Path
-from pin_metaik.optimize.space import Array
 
 FLAT = 1e-9  # m; corners nearer to a straight line are none
 TINY = 1e-12  # s; no tangent length per speed is shorter, so that it can be divided by

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.interrupts import wrapped
 from pin_metaik.mobile.motion import speed_kernels as kernels
 from pin_metaik.mobile.motion.route import Route
-from pin_metaik.optimize import AskTell, Box, Budget, Metaheuristic, Status, minimize
-from pin_metaik.optimize.space import Array
+from pin_metaik.optimize import Box, Budget, Metaheuristic, Status, minimize
+from pin_metaik.watching import Watch
 
 COARSE, FINE = 101, 17  # speeds a corner, in the first round and in those that look closer
 SHRINK, SMALLEST = 0.45, 1e-9  # how much smaller a window becomes, and where it ends, of the cap
@@ -93,7 +94,7 @@ def searched_speeds(
     budget: Budget,
     rng: int | np.random.Generator | None,
     tangents: Tangents | None = None,
-    callback: Callable[[AskTell], bool | None] | None = None,
+    watch: Watch | None = None,
     lower: float = 0.0,
 ) -> Speeds:
     """The speeds a metaheuristic finds; stopping at every corner is its first individual, so it ends feasible.
@@ -102,9 +103,9 @@ def searched_speeds(
         route: The route.
         algorithm: By name or as an object.
         budget: What it may spend; an evaluation is one choice of all speeds.
-        rng: Seed or generator.
+        rng: Seed or generator; ``None`` is a fixed seed.
         tangents: Tangent lengths (k, n) at speeds V (k, n), if not the true ones.
-        callback: Called after every generation.
+        watch: Called after every generation of the search with evaluations done and in all; True ends it.
         lower: Speeds below this are a stop.
 
     Raises:
@@ -126,6 +127,6 @@ def searched_speeds(
 
     box, stopping = Box(np.zeros(n), route.caps), np.zeros((1, n))
     return wrapped(
-        lambda: minimize(costs, box, algorithm, budget, rng, seeds=stopping, callback=callback),
+        lambda: minimize(costs, box, algorithm, budget, rng, seeds=stopping, watch=watch),
         lambda found: Speeds(driven(found.x), found.cost, found.evaluations, found.status is Status.INTERRUPTED),
     )

@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pin_metaik.arrays import Array
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
-from pin_metaik.optimize.space import Array
 
 ROUNDING = 1e-12  # m; as much too short counts as long enough
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from time import perf_counter
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry, InvalidSetting
 from pin_metaik.interrupts import wrapped
 from pin_metaik.mobile.motion.learned import LearnedCorners, LearnedTurn, learn_turn
@@ -22,10 +22,11 @@ from pin_metaik.mobile.motion.turn import turn_phases
 from pin_metaik.mobile.motion.vehicle import NOMAD_200, SynchroDrive
 from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.world.polygons import read_obstacles
-from pin_metaik.optimize import AskTell, Budget, Metaheuristic
+from pin_metaik.optimize import Budget, Metaheuristic
 from pin_metaik.optimize.de import DE
 from pin_metaik.optimize.settings import one_of, within
-from pin_metaik.optimize.space import Array
+from pin_metaik.randomness import repeatable
+from pin_metaik.watching import Watch
 
 SEARCH = DE(agents=30)  # with best/1/bin it stops early: up to 3 % too slow with nine corners
 SEARCH_BUDGET = Budget(evaluations=30 * 500)
@@ -43,7 +44,7 @@ def plan_trajectory(
     budget: Budget = SEARCH_BUDGET,
     rng: int | np.random.Generator | None = 0,
     model: LearnedTurn | None = None,
-    callback: Callable[[AskTell], bool | None] | None = None,
+    watch: Watch | None = None,
 ) -> TrajectoryPlan:
     """Plan the quickest motion of straights and curves along a polyline, from rest to rest.
 
@@ -59,9 +60,9 @@ def plan_trajectory(
         radius: Distance of the robot's centre from obstacles, in m; default: the robot's radius.
         algorithm: What searches, for ``de`` and ``ann``.
         budget: What it may spend.
-        rng: Seed or generator.
+        rng: Seed or generator; ``None`` is a fixed seed.
         model: The network for ``ann``; default: a new one, learned in a second.
-        callback: Called after every generation of the search.
+        watch: Called after every generation of the search with evaluations done and in all; True ends it.
 
     Raises:
         InvalidSetting: No such method, or a radius below zero.
@@ -93,12 +94,12 @@ def plan_trajectory(
             radius=keep,
             evaluations=speeds.evaluations,
             seconds=took,
-            seed=int(rng) if isinstance(rng, (int, np.integer)) else None,
+            seed=repeatable(rng),
             interrupted=speeds.interrupted,
             learned=None if turns is None else turns.report(speeds.v),
         )
 
-    return wrapped(lambda: _speeds(route, method, algorithm, budget, rng, turns, callback), planned)
+    return wrapped(lambda: _speeds(route, method, algorithm, budget, rng, turns, watch), planned)
 
 
 def drive(route: Route, v: Array, tangents: Array | None = None) -> Trajectory:
@@ -131,11 +132,11 @@ def _speeds(
     budget: Budget,
     rng: int | np.random.Generator | None,
     turns: LearnedCorners | None,
-    callback: Callable[[AskTell], bool | None] | None,
+    watch: Watch | None,
 ) -> Speeds:
     """The speeds by a method; with a network's ``turns``, those that it takes to be the quickest."""
     if method == "dp":
         return optimal_speeds(route)
     if turns is None:
-        return searched_speeds(route, algorithm, budget, rng, callback=callback)
-    return searched_speeds(route, algorithm, budget, rng, turns.tangents, callback, turns.slowest)
+        return searched_speeds(route, algorithm, budget, rng, watch=watch)
+    return searched_speeds(route, algorithm, budget, rng, turns.tangents, watch, turns.slowest)

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.motion.turn import clothoid
 from pin_metaik.mobile.paths.path import write_table
 from pin_metaik.optimize.settings import MANY
-from pin_metaik.optimize.space import Array
 from pin_metaik.output import writable
 
 SAMPLES = 0.02  # s

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import fresnel
 
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
-from pin_metaik.optimize.space import Array
 
 
 def lead_time(theta: ArrayLike, vehicle: SynchroDrive) -> Array:

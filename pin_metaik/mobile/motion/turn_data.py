@@ -6,16 +6,16 @@ evenly spaced are taken. Angles are in rad here and in degrees in the paper.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.interrupts import wrapped
 from pin_metaik.learn import Clusters, fuzzy_c_means
-from pin_metaik.learn.arrays import Array
 from pin_metaik.mobile.motion.vehicle import SynchroDrive
 from pin_metaik.randomness import as_generator
+from pin_metaik.watching import Watch
 
 LARGEST = np.radians(150)
 FINE_SPEEDS, FINE_ANGLES = 79, 301
@@ -43,7 +43,7 @@ def clustered_points(
     vehicle: SynchroDrive,
     rng: int | np.random.Generator | None = 0,
     iterations: int = 150,
-    callback: Callable[[int, float], object] | None = None,
+    watch: Watch | None = None,
     clusters: int = COARSE_SPEEDS * COARSE_ANGLES,
     start: Array | None = None,
 ) -> Clusters:
@@ -51,9 +51,9 @@ def clustered_points(
 
     Args:
         vehicle: The robot.
-        rng: Seed or generator.
+        rng: Seed or generator; ``None`` is a fixed seed.
         iterations: At most; after 150 the centres still move a little, and take half a minute.
-        callback: Called after every iteration with its number and the objective.
+        watch: Called after every iteration with their number and the error; True ends it.
         clusters: How many.
         start: Centres of an earlier call, to go on from there.
     """
@@ -62,7 +62,7 @@ def clustered_points(
     begin = None if start is None else (start - lower) / width
     scaled = (grid - lower) / width
     return wrapped(
-        lambda: fuzzy_c_means(scaled, clusters, iterations=iterations, rng=rng, start=begin, callback=callback),
+        lambda: fuzzy_c_means(scaled, clusters, iterations=iterations, rng=rng, start=begin, watch=watch),
         lambda found: replace(found, centres=lower + width * found.centres),
     )
 

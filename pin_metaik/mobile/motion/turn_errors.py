@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pin_metaik.learn.arrays import Array
+from pin_metaik.arrays import Array
 
 
 @dataclass(frozen=True)

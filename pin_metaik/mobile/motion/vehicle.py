@@ -7,8 +7,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pin_metaik.arguments import checked
-from pin_metaik.errors import InvalidSetting, UnknownName
-from pin_metaik.mobile.files import number, only, read_json
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.files import known_keys, read_json
+from pin_metaik.lookup import lookup
+from pin_metaik.mobile.files import number
 
 INCH = 0.0254  # m
 
@@ -77,15 +79,13 @@ def load_vehicle(source: str | Path) -> SynchroDrive:
     """
     if Path(source).suffix.lower() == ".json":
         return _read(Path(source))
-    if source not in VEHICLES:
-        raise UnknownName("vehicle", str(source), VEHICLES)
-    return VEHICLES[str(source)]
+    return lookup("vehicle", str(source), VEHICLES)
 
 
 def _read(path: Path) -> SynchroDrive:
     given = read_json(path, InvalidSetting)
     if not isinstance(given, dict):
         raise InvalidSetting(f"{path} is not a vehicle: expected an object with {', '.join(LIMITS)}")
-    only(given, ("name", *LIMITS), str(path), InvalidSetting)
+    known_keys(given, path, InvalidSetting, (), ("name", *LIMITS))
     limits = {key: number(given, key, str(path), InvalidSetting) for key in LIMITS if key in given}
     return replace(NOMAD_200, name=str(given.get("name", path.stem)), **limits)

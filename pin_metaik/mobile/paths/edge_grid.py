@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.mobile.paths import visibility_kernels as kernels
 from pin_metaik.mobile.world.border import Border, Indices
-from pin_metaik.optimize.space import Array
 
 CELLS = 2  # for each edge
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.mobile.errors import NoPath
 from pin_metaik.mobile.paths import visibility_kernels as kernels
 from pin_metaik.mobile.paths.path import Path
@@ -21,7 +22,6 @@ from pin_metaik.mobile.world.border import Indices
 from pin_metaik.mobile.world.freespace import LARGE, FreeSpace
 from pin_metaik.mobile.world.scene import Point
 from pin_metaik.notice import notice
-from pin_metaik.optimize.space import Array
 
 Edges = set[tuple[int, int]]
 

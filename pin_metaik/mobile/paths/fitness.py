@@ -11,14 +11,15 @@ import shapely
 from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked, shown
-from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.arrays import Array
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.lookup import lookup
 from pin_metaik.mobile.paths import fitness_kernels as kernels
 from pin_metaik.mobile.world.border import rings
 from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.growth import grow
 from pin_metaik.mobile.world.scene import Point
 from pin_metaik.optimize.settings import one_of, within
-from pin_metaik.optimize.space import Array
 
 Counts = NDArray[np.int64]
 
@@ -117,9 +118,7 @@ def make_fitness(fitness: str | Fitness) -> Fitness:
                 f"not a fitness: {shown(fitness)}; give a name or an object with on(space, start, goal)"
             )
         return fitness
-    if fitness not in FITNESSES:
-        raise UnknownName("fitness", fitness, FITNESSES)
-    return FITNESSES[fitness]()
+    return lookup("fitness", fitness, FITNESSES)()
 
 
 @dataclass(frozen=True, eq=False)

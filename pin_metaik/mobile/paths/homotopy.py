@@ -17,6 +17,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.mobile.paths.exact import shortest_path
 from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.paths.visibility import Visibility, VisibilityGraph
@@ -24,7 +25,6 @@ from pin_metaik.mobile.world.border import Indices
 from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.scene import Point
 from pin_metaik.optimize.settings import whole
-from pin_metaik.optimize.space import Array
 
 LARGEST = 100_000  # partial paths looked at before giving up on more alternatives
 

@@ -12,9 +12,9 @@ import shapely
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked, shown
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.settings import within
-from pin_metaik.optimize.space import Array
 from pin_metaik.output import writable
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from time import perf_counter
 
 import numpy as np
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.interrupts import wrapped
 from pin_metaik.mobile.errors import NoPath
@@ -16,11 +16,12 @@ from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.paths.problem import PathProblem
 from pin_metaik.mobile.paths.result import PathPlan, PathStatus
 from pin_metaik.mobile.world.scene import Scene
-from pin_metaik.optimize import ALGORITHMS, AskTell, Budget, Metaheuristic, Result, Status, make, minimize
+from pin_metaik.optimize import ALGORITHMS, Budget, Metaheuristic, Result, Status, make, minimize
 from pin_metaik.optimize.ga import GA
 from pin_metaik.optimize.pso import PSO
 from pin_metaik.optimize.settings import whole
-from pin_metaik.optimize.space import Array
+from pin_metaik.randomness import repeatable
+from pin_metaik.watching import Watch
 
 EXACT = "exact"
 
@@ -44,7 +45,7 @@ def plan_path(
     rng: int | np.random.Generator | None = 0,
     seeded: bool = False,
     trace: bool = False,
-    callback: Callable[[AskTell], bool | None] | None = None,
+    watch: Watch | None = None,
 ) -> PathPlan:
     """Plan a path.
 
@@ -56,11 +57,11 @@ def plan_path(
         fitness: What metaheuristics minimise: ``"exact"``, ``"paper"`` or an object.
         via: Via points. With fewer than the shortest path has corners it is out of reach.
         budget: What a metaheuristic may spend; an evaluation is one path.
-        rng: Seed or generator.
+        rng: Seed or generator; ``None`` is a fixed seed.
         seeded: Whether to start one individual at the shortest path: for a fitness that is not its length, or to see
             that the search can only be better than that.
         trace: Whether to keep the convergence.
-        callback: Called after every generation with the running search; returning True ends it.
+        watch: Called after every generation of the search with evaluations done and in all; True ends it.
 
     Returns:
         The plan: check ``plan.success``. A metaheuristic's best may go through an obstacle.
@@ -74,7 +75,7 @@ def plan_path(
     """
     if isinstance(problem, Scene):
         problem = PathProblem.of(problem)
-    seed = int(rng) if isinstance(rng, (int, np.integer)) else None
+    seed = repeatable(rng)
     if method == EXACT:
         began = perf_counter()
         path = problem.optimum
@@ -85,7 +86,7 @@ def plan_path(
     seeds = _seed(problem, via) if seeded else None
     box, name = problem.box(via), method if isinstance(method, str) else type(method).__name__
     return wrapped(
-        lambda: minimize(objective, box, algorithm, budget, rng, seeds=seeds, trace=trace, callback=callback),
+        lambda: minimize(objective, box, algorithm, budget, rng, seeds=seeds, trace=trace, watch=watch),
         lambda found: _searched(problem, found, name, seed),
     )
 

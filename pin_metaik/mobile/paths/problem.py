@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.mobile.paths.exact import shortest_path
 from pin_metaik.mobile.paths.homotopy import shortest_paths
 from pin_metaik.mobile.paths.path import Path
@@ -17,7 +18,6 @@ from pin_metaik.mobile.world.growth import Join
 from pin_metaik.mobile.world.scene import Scene
 from pin_metaik.optimize import Box
 from pin_metaik.optimize.settings import few, within
-from pin_metaik.optimize.space import Array
 
 
 @dataclass(frozen=True, eq=False)

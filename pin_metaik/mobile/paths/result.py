@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.paths.problem import PathProblem
-from pin_metaik.optimize.space import Array
 
 
 class PathStatus(StrEnum):
@@ -42,7 +42,7 @@ class PathPlan:
         seconds: Time taken, in s: of a search without the optimum that the gap is measured by; of the exact planner
             without what the problem had worked out already.
         seed: Of every random choice; None if a generator was handed in.
-        interrupted: Whether its search was stopped, by Ctrl-C or its callback.
+        interrupted: Whether its search was stopped, by Ctrl-C or its watch.
         problem: What was asked.
         trace: Evaluations and best cost after each generation (g, 2), when asked for.
     """

@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.paths import visibility_kernels as kernels
 from pin_metaik.mobile.paths.edge_grid import EdgeGrid
 from pin_metaik.mobile.world.border import Border, Indices
 from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.scene import Point
-from pin_metaik.optimize.space import Array
 
 Arrays = tuple[Array, Indices, Indices, NDArray[np.bool_], float, Indices, Indices, Array, int]
 

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from pin_metaik.optimize.space import Array
+from pin_metaik.arrays import Array
 
 Indices = NDArray[np.int64]
 

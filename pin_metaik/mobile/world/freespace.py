@@ -11,13 +11,13 @@ import numpy as np
 import shapely
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.mobile.errors import Blocked
 from pin_metaik.mobile.world.gaps import Contacts, opened
 from pin_metaik.mobile.world.growth import MITRE_LIMIT, WITHIN, Join, grow
 from pin_metaik.mobile.world.scene import Point, Scene
 from pin_metaik.notice import notice
-from pin_metaik.optimize.space import Array
 
 Box = tuple[float, float, float, float]
 

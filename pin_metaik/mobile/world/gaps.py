@@ -12,8 +12,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from pin_metaik.arrays import Array
 from pin_metaik.mobile.world.border import Border, Indices
-from pin_metaik.optimize.space import Array
 
 NARROW = 2.0  # of what counts as touching: gaps narrower than this are closed, obstacles thinner than this are none
 BLUNT = 1e-3  # half an angle, as a sine, below which the tip of an obstacle is as if cut off

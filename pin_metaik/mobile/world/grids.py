@@ -15,10 +15,10 @@ from scipy import ndimage
 from shapely import affinity
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.mobile.world.ros_maps import OCCUPIED, read_ros_map
 from pin_metaik.optimize.settings import one_of, whole
-from pin_metaik.optimize.space import Array
 
 Unknown = Literal["blocked", "free"]
 

@@ -13,9 +13,9 @@ from typing import Literal
 import numpy as np
 import shapely
 
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.world.border import rings
-from pin_metaik.optimize.space import Array
 
 Join = Literal["mitre", "round"]
 

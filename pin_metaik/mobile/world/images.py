@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.errors import InvalidGeometry, MissingExtra
-from pin_metaik.optimize.space import Array
+from pin_metaik.arrays import Array
+from pin_metaik.errors import InvalidGeometry
+from pin_metaik.lookup import need
 
 COMMENT = re.compile(rb"#[^\r\n]*")
 BETWEEN = rb"(?:\s|#[^\r\n]*[\r\n])+"
@@ -52,8 +52,7 @@ def read_image(path: Path) -> Pixels:
         raise InvalidGeometry(f"cannot read {path}: {reason.strerror}") from None
     if data[:2] in (b"P2", b"P5"):
         return Pixels(read_pgm(data, path)[:, :, None])
-    if find_spec("PIL") is None:
-        raise MissingExtra(f"reading {path}", "mobile")
+    need(f"reading {path}", "mobile", "PIL")
     from PIL import Image, UnidentifiedImageError
 
     try:

@@ -14,8 +14,8 @@ from shapely.geometry.base import BaseGeometry
 
 from pin_metaik.arguments import checked, shown
 from pin_metaik.errors import InvalidGeometry
+from pin_metaik.files import read_json, read_text
 from pin_metaik.mobile.errors import LooksLikeDegrees
-from pin_metaik.mobile.files import read_json, read_text
 from pin_metaik.said import warn
 
 SIMPLE = ("Polygon", "LineString", "Point")

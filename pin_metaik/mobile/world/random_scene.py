@@ -31,7 +31,7 @@ def random_scene(
 
     Args:
         obstacles: How many.
-        rng: Seed or generator.
+        rng: Seed or generator; ``None`` is a fixed seed.
         size: Width of the workspace, in m.
         fill: Share of the workspace that the circles around the obstacles cover.
         gap: Least distance between obstacles, and from them to start and goal, in m. Twice a robot's clearance lets it

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.errors import InvalidGeometry
-from pin_metaik.mobile.files import number, numbers, only, read_yaml
+from pin_metaik.files import known_keys
+from pin_metaik.mobile.files import number, numbers, read_yaml
 from pin_metaik.mobile.world.images import Pixels, read_image
 
 Mode = Literal["trinary", "scale", "raw"]
@@ -45,7 +46,7 @@ def read_ros_map(path: Path) -> RosMap:
     given = read_yaml(path, InvalidGeometry)
     if not isinstance(given, dict):
         raise InvalidGeometry(f"{path} is not the YAML of a ROS map: expected the keys {', '.join(NEEDED)}")
-    only(given, (*NEEDED, "mode"), str(path), InvalidGeometry)
+    known_keys(given, path, InvalidGeometry, (), (*NEEDED, "mode"))
     if missing := [key for key in NEEDED if key not in given]:
         raise InvalidGeometry(f"{path} is not the YAML of a ROS map: it has no {', '.join(missing)}")
     place = f"{path} is not an occupancy grid"

@@ -15,7 +15,7 @@ import shapely
 
 from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidGeometry, InvalidSetting, UnknownName
-from pin_metaik.mobile.files import only, read_json
+from pin_metaik.files import known_keys, read_json
 from pin_metaik.mobile.world.grids import Unknown, read_grid
 from pin_metaik.mobile.world.polygons import FARTHEST, GEOJSON, read_obstacles
 from pin_metaik.optimize.settings import one_of
@@ -157,10 +157,10 @@ def scene_of(mapping: Mapping[str, Any], name: str = "scene", start: Any = None,
     """
     if mapping.get("type") in GEOJSON:
         slips = (key for key in mapping if get_close_matches(str(key), KEYS, n=1, cutoff=CLOSE))
-        only(dict.fromkeys(slips), KEYS, name, InvalidGeometry)  # members of somebody's own are none
+        known_keys(dict.fromkeys(slips), name, InvalidGeometry, (), KEYS)  # members of somebody's own are none
         mapping = {"obstacles": mapping, **{key: mapping[key] for key in ("start", "goal", "bounds") if key in mapping}}
     else:
-        only(mapping, (*KEYS, *REMARKS), name, InvalidGeometry)
+        known_keys(mapping, name, InvalidGeometry, (), (*KEYS, *REMARKS))
     if "obstacles" not in mapping:
         raise InvalidGeometry(f"{name} is not a scene: it has no 'obstacles'; keys: {', '.join(KEYS)}")
     ends = {"start": start, "goal": goal}

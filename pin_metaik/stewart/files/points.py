@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.optimize.space import Array
 from pin_metaik.output import writable
 from pin_metaik.stewart.workspace.workspace import Workspace
 

@@ -75,7 +75,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from decimal import Decimal
@@ -89,19 +88,19 @@ from pin_metaik.errors import (
     InvalidSetting,
     InvalidTable,
     MetaIKError,
-    UnknownName,
 )
+from pin_metaik.lookup import lookup
 from pin_metaik.optimize import ALGORITHMS, Metaheuristic
-from pin_metaik.stewart.files.tables import Table
 from pin_metaik.stewart.kinematics.conditioning import Dexterity
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.mechanism.ranges import ANGLES_EACH, SIDES, Ranges
 from pin_metaik.stewart.mechanism.task import DesignTask
-from pin_metaik.stewart.mechanism.units import ANGLES, LENGTHS, PURE, Unit
 from pin_metaik.stewart.platform.geometry import Geometry, legs_of
 from pin_metaik.stewart.platform.limits import LegLimits, Limits, ServoLimits
 from pin_metaik.stewart.platform.servos import Servos
 from pin_metaik.stewart.workspace.grid import Grid
+from pin_metaik.toml import Table, read_toml
+from pin_metaik.units import ANGLES, LENGTHS, PURE, Unit
 
 JOINT_LIMITS = ("base_angle", "platform_angle", "distance", "home")
 SERVOS = ("horn", "rod", "lowest", "highest")
@@ -135,14 +134,7 @@ def read_mechanism(path: str | Path) -> Mechanism:
         InvalidBounds: A range that is not one.
         UnknownName: No metaheuristic of that name.
     """
-    try:
-        content = tomllib.loads(Path(path).read_text(encoding="utf-8"), parse_float=Decimal)
-    except OSError as error:
-        raise InvalidTable(f"cannot read {path}: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise InvalidTable(f"{path} is not TOML: it is not UTF-8 text") from None
-    except tomllib.TOMLDecodeError as error:
-        raise InvalidTable(f"{path} is not TOML: {error}") from None
+    content = read_toml(Path(path), number=Decimal)
     try:
         return _mechanism(content, str(path))
     except (InvalidGeometry, InvalidSetting, InvalidBounds) as error:
@@ -289,9 +281,7 @@ def _spans(table: Table, key: str, length: Unit, angle: Unit) -> Any:
 
 
 def _algorithm(name: str, settings: object, path: str) -> Metaheuristic:
-    if name not in ALGORITHMS:
-        raise UnknownName("metaheuristic", name, ALGORITHMS)
-    kind = ALGORITHMS[name]
+    kind = lookup("metaheuristic", name, ALGORITHMS)
     assert is_dataclass(kind)
     table = Table(settings, f"{path}: design.settings", (), tuple(field.name for field in fields(kind)))
     values = {key: float(value) if isinstance(value, Decimal) else value for key, value in table.content.items()}

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidTarget
-from pin_metaik.optimize.space import Array
 from pin_metaik.output import writable
 from pin_metaik.stewart.kinematics.trajectory import Motion, Trajectory
 from pin_metaik.stewart.platform.poses import pose_at

@@ -16,12 +16,13 @@ from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize import ALGORITHMS, Metaheuristic, make
 from pin_metaik.output import writable
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
-from pin_metaik.stewart.mechanism.ranges import ANGLES_EACH, SIDES, Ranges, Span
+from pin_metaik.stewart.mechanism.ranges import ANGLES_EACH, SIDES, Ranges
 from pin_metaik.stewart.mechanism.task import DesignTask
-from pin_metaik.stewart.mechanism.units import ANGLES, LENGTHS, PURE, Unit
 from pin_metaik.stewart.platform.geometry import Geometry
 from pin_metaik.stewart.platform.limits import LegLimits, Limits
 from pin_metaik.stewart.workspace.grid import Grid
+from pin_metaik.toml import Span
+from pin_metaik.units import ANGLES, LENGTHS, PURE, Unit
 
 DEG = ANGLES["deg"]
 

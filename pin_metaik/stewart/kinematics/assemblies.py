@@ -18,8 +18,8 @@ import pinocchio as pin
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidConfiguration, InvalidGeometry, InvalidSetting
-from pin_metaik.optimize.space import Array
 from pin_metaik.randomness import as_generator
 from pin_metaik.stewart.kernels.loading import load_homotopy
 from pin_metaik.stewart.kinematics.forward import ForwardStatus, as_coordinates, newton

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked, shown
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize.settings import one_of
-from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kinematics.golden import golden_section
 from pin_metaik.stewart.kinematics.judging import judged
 from pin_metaik.stewart.platform.geometry import Geometry

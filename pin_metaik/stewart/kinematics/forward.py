@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidConfiguration
-from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kernels.loading import load_newton
 from pin_metaik.stewart.platform.geometry import Geometry
 from pin_metaik.stewart.platform.poses import PoseLike, as_poses

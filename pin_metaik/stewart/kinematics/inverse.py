@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.platform.actuation import Links
 from pin_metaik.stewart.platform.geometry import Geometry
 from pin_metaik.stewart.platform.poses import PoseLike, as_poses, is_many

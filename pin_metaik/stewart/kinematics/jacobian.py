@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pin_metaik.arguments import checked
-from pin_metaik.optimize.space import Array
+from pin_metaik.arrays import Array
 from pin_metaik.stewart.kinematics.conditioning import DEFAULT, Dexterity, characteristic_length
 from pin_metaik.stewart.kinematics.inverse import links_at
 from pin_metaik.stewart.platform.geometry import Geometry

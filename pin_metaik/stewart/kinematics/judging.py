@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
-from pin_metaik.optimize.space import Array
+from pin_metaik.arrays import Array
 from pin_metaik.stewart.kernels.loading import load_judging
 from pin_metaik.stewart.platform.geometry import Geometry
 from pin_metaik.stewart.platform.limits import Limits, lengths

@@ -9,9 +9,9 @@ import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, checked, checked_as
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.optimize.settings import few, within
-from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kinematics.conditioning import DEFAULT, Dexterity, characteristic_length, measure
 from pin_metaik.stewart.kinematics.inverse import links_at
 from pin_metaik.stewart.kinematics.jacobian import jacobian

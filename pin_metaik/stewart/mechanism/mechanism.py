@@ -8,12 +8,14 @@ from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.stewart.kinematics.conditioning import Dexterity
 from pin_metaik.stewart.mechanism.task import DesignTask
-from pin_metaik.stewart.mechanism.units import ANGLES, LENGTHS, Coordinate
+from pin_metaik.stewart.mechanism.units import Coordinate
 from pin_metaik.stewart.platform.geometry import Geometry
 from pin_metaik.stewart.platform.limits import Limits, fit
 from pin_metaik.stewart.workspace.grid import Grid
-from pin_metaik.stewart.workspace.surveying import Watch, survey
+from pin_metaik.stewart.workspace.surveying import survey
 from pin_metaik.stewart.workspace.workspace import Workspace
+from pin_metaik.units import ANGLES, LENGTHS
+from pin_metaik.watching import Watch
 
 
 @checked

@@ -5,23 +5,23 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass, field, fields
 from numbers import Real
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.arguments import number
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidBounds
-from pin_metaik.optimize.space import Array, Box
+from pin_metaik.optimize.space import Box
 from pin_metaik.stewart.platform.geometry import Geometry
 from pin_metaik.stewart.platform.limits import Limits
-from pin_metaik.stewart.workspace.grid import Range, as_range
+from pin_metaik.stewart.workspace.grid import as_range
+from pin_metaik.toml import Span
 
 SIDES = ("base", "platform")
 LEG_DIMENSIONS = {"shortest", "longest", "horn", "rod", "directions"}
 ANGLES_EACH = ("base_angles", "platform_angles", "directions")
-Span: TypeAlias = float | Range
-"""A value that is fixed, or the range of one that is free."""
 
 
 @dataclass(frozen=True)

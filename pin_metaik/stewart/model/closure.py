@@ -13,8 +13,8 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting, InvalidTarget
-from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kinematics.inverse import inverse
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.model.urdf import to_urdf

@@ -14,7 +14,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.optimize.space import Array
+from pin_metaik.arrays import Array
 
 
 class Words(NamedTuple):

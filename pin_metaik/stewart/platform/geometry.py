@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, checked, checked_as, instance, number, shown
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry
-from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.platform.actuation import SLIDES, Actuation
 from pin_metaik.stewart.platform.servo_legs import ServoLegs
 from pin_metaik.stewart.platform.servos import Servos

@@ -9,8 +9,8 @@ from typing import TypeAlias
 import numpy as np
 
 from pin_metaik.arguments import array, checked, number
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry
-from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.platform.geometry import Geometry
 
 ROUNDING = 1e-12  # of a length: what decimals of a file leave

@@ -8,10 +8,10 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.kinematics.kernel.layout import ORTHONORMAL
 from pin_metaik.kinematics.pose import as_pose, as_position, rpy_matrix
-from pin_metaik.optimize.space import Array
 
 PoseLike: TypeAlias = pin.SE3 | ArrayLike
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.optimize.space import Array
+from pin_metaik.arrays import Array
 from pin_metaik.stewart.platform.actuation import Links, Words
 from pin_metaik.stewart.platform.servos import Servos, each
 

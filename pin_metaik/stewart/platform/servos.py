@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked_as, number
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry
-from pin_metaik.optimize.space import Array
 
 LEVEL = 1e-9  # sine of the angle below which two directions count as one
 Vector = tuple[float, float, float]

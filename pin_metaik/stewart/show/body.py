@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.optimize.space import Array
+from pin_metaik.arrays import Array
 from pin_metaik.stewart.workspace.workspace import Workspace
 
 MOST_CELLS = 60  # along each axis; more than that nobody sees

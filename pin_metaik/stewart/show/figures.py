@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pin_metaik.arguments import checked, instance
-from pin_metaik.errors import InvalidSetting, MissingExtra
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.lookup import need
 from pin_metaik.output import writable
 
 if TYPE_CHECKING:
@@ -22,10 +23,7 @@ def need_plots() -> None:
     Raises:
         MissingExtra: matplotlib is not installed.
     """
-    try:
-        import matplotlib.figure  # noqa: F401  # asked for, not used
-    except ImportError:
-        raise MissingExtra("a picture", "plots") from None
+    need("a picture", "plots", "matplotlib")
 
 
 @checked

@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from pin_metaik.arguments import checked
-from pin_metaik.optimize.space import Array
+from pin_metaik.arrays import Array
 from pin_metaik.stewart.kinematics.forward import level
 from pin_metaik.stewart.kinematics.inverse import inverse
 from pin_metaik.stewart.mechanism.mechanism import Mechanism

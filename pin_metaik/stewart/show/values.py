@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from pin_metaik.optimize.space import Array
+from pin_metaik.arrays import Array
 from pin_metaik.stewart.kinematics.conditioning import conditioning
 from pin_metaik.stewart.kinematics.interference import leg_distances
 from pin_metaik.stewart.kinematics.inverse import inverse

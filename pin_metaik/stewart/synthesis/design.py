@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.interrupts import wrapped
-from pin_metaik.optimize import AskTell, Budget, Result, Status, minimize
-from pin_metaik.optimize.space import Array
+from pin_metaik.optimize import Budget, Result, Status, minimize
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.synthesis.fitness import UNUSABLE, Fitness, Score, task_of
-from pin_metaik.stewart.workspace.surveying import Watch
+from pin_metaik.watching import Watch
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ def design(
     Args:
         mechanism: What to start from: the joints and legs there are, and everything that is fixed.
         rng: Seed or generator instead of the task's seed; the same seed gives the same design.
-        watch: Called after every generation with (designs looked at, designs in all).
+        watch: Called after every generation with designs looked at and in all, and the best cost; True ends the search.
 
     Returns:
         The result; check ``result.success``.
@@ -94,10 +94,6 @@ def design(
     fitness = Fitness(mechanism)
     point = fitness.variables.point(mechanism.geometry, mechanism.limits)
 
-    def tell(search: AskTell) -> None:
-        if watch is not None:
-            watch(search.run.evaluations, task.evaluations)
-
     def search() -> Result:
         return minimize(
             _Measured(fitness),
@@ -107,7 +103,7 @@ def design(
             task.seed if rng is None else rng,
             seeds=point if task.from_current else None,
             trace=True,
-            callback=tell,
+            watch=watch,
         )
 
     return wrapped(search, lambda found: _designed(mechanism, fitness, found))

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.mechanism.ranges import Dimensions, Variables
 from pin_metaik.stewart.mechanism.task import DesignTask

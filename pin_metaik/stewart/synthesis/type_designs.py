@@ -17,14 +17,14 @@ from pin_metaik.optimize.settings import few
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.mechanism.ranges import SIDES, Ranges
 from pin_metaik.stewart.mechanism.task import DesignTask
-from pin_metaik.stewart.mechanism.units import ANGLES
 from pin_metaik.stewart.platform.geometry import FEWEST_LEGS, MOST_LEGS, Geometry
 from pin_metaik.stewart.platform.layouts import NAMED, standard_geometry, tangential_servos
 from pin_metaik.stewart.platform.limits import LegLimits, Limits, ServoLimits
 from pin_metaik.stewart.platform.servos import each
 from pin_metaik.stewart.synthesis.design import Designed, design
 from pin_metaik.stewart.synthesis.fitness import task_of
-from pin_metaik.stewart.workspace.surveying import Watch
+from pin_metaik.units import ANGLES
+from pin_metaik.watching import Watch
 
 ASIDE = radians(25.0)  # how far a joint may stand from where its type has it
 NARROW, WIDE = 0.5, 1.5  # of the radii of a new mechanism: between these a design may change them
@@ -169,7 +169,7 @@ def compare_types(
             legs.
         runs: Searches for each type, with seeds that follow the task's.
         rng: The first seed instead of the task's.
-        watch: Called after every generation with (designs looked at, designs in all).
+        watch: Called after every generation with designs looked at and in all; True ends it as Ctrl-C does.
 
     Raises:
         InvalidSetting: The mechanism has no task or joints anywhere, or fewer than one run.
@@ -211,7 +211,7 @@ def compare_types(
 
 
 def _offset(watch: Watch, before: int, total: int) -> Watch:
-    return lambda done, _: watch(before + done, total)
+    return lambda at: watch(replace(at, done=before + at.done, total=total))
 
 
 def _kept(ranges: Ranges) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pin_metaik.optimize.space import Array
+from pin_metaik.arrays import Array
 from pin_metaik.stewart.kernels.loading import load_bounds
 from pin_metaik.stewart.kinematics.judging import arguments_of
 from pin_metaik.stewart.platform.geometry import Geometry

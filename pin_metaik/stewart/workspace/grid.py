@@ -10,10 +10,10 @@ from typing import TypeAlias
 import numpy as np
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidBounds, InvalidSetting
 from pin_metaik.kinematics.pose import rpy_matrix
 from pin_metaik.optimize.settings import few
-from pin_metaik.optimize.space import Array
 
 Range: TypeAlias = tuple[float, float]
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
-from pin_metaik.optimize.space import Array
+from pin_metaik.arrays import Array
 from pin_metaik.stewart.kinematics.conditioning import measure
 from pin_metaik.stewart.kinematics.golden import golden_section
 from pin_metaik.stewart.kinematics.jacobian import transmission

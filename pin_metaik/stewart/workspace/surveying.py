@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.interrupts import Interrupted
-from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kernels.loading import load_judging
 from pin_metaik.stewart.kinematics.conditioning import DEFAULT, Dexterity, best_length, measure
 from pin_metaik.stewart.kinematics.judging import arguments_of
@@ -20,9 +18,7 @@ from pin_metaik.stewart.platform.limits import Limits
 from pin_metaik.stewart.workspace.cells import Cells, cells_of, finer_cells, room
 from pin_metaik.stewart.workspace.grid import Grid
 from pin_metaik.stewart.workspace.workspace import EmptyWorkspace, Workspace
-
-Watch: TypeAlias = Callable[[int, int], object]
-"""Told of progress: steps done, steps in all."""
+from pin_metaik.watching import Progress, Stopped, Watch, ended, tell, with_result
 
 CHUNK = 200_000  # poses looked at between two words on progress: a tenth of a second at most
 LEAST = 1000
@@ -55,7 +51,7 @@ def survey(
         limits: What its legs allow.
         grid: Where to look; default: as far as the limits leave room, level, in 40 x 40 x 40 cells.
         dexterity: How to measure nu.
-        watch: Called with (cells done, cells in all) as it goes.
+        watch: Called with cells done and in all as it goes; True ends it, and ``complete`` is False.
 
     Raises:
         EmptyWorkspace: No pose of the grid is within the limits; it says whether that is proved for all between them.
@@ -69,7 +65,7 @@ def survey(
         else:
             found, left = explored(geometry, limits, where, dexterity, LEAST if where.open else 0, MOST, watch)
     except Interrupted as stop:
-        raise Interrupted(with_best_length(stop.result)) from None
+        return ended(stop, with_best_length(stop.result))
     if not found.reached.any():
         raise EmptyWorkspace(found.counts, left)
     return with_best_length(found)
@@ -114,17 +110,17 @@ def judged(
     """Cells judged.
 
     Raises:
-        Interrupted: Ctrl-C, once a pose was reached; its ``result`` has the cells that were looked at.
+        Interrupted: Ctrl-C, once a pose was reached, or a watch; its ``result`` has the cells that were looked at.
     """
     length = dexterity.length if not isinstance(dexterity.length, str) else geometry.platform_radius
     states, nu = np.zeros(cells.shape, dtype=np.int8), np.zeros(cells.shape)
     found = Workspace(geometry, limits, cells, dexterity, length, states, nu)
     try:
         judge_cells(geometry, limits, cells, length, dexterity, states, nu, watch)
-    except KeyboardInterrupt:
-        if not found.reached.any():
+    except KeyboardInterrupt as stop:
+        if not (found.reached.any() or isinstance(stop, Stopped)):
             raise
-        raise Interrupted(found) from None
+        raise with_result(stop, found) from None
     return found
 
 
@@ -175,5 +171,4 @@ def judge_cells(
             states[part],
             nu[part],
         )
-        if watch is not None:
-            watch(min(first + thickness, nx) * int(np.prod(slab)), int(np.prod(cells.shape)))
+        tell(watch, Progress(min(first + thickness, nx) * int(np.prod(slab)), int(np.prod(cells.shape))))

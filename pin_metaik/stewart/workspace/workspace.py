@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry, InvalidSetting
-from pin_metaik.optimize.space import Array
 from pin_metaik.stewart.kinematics.conditioning import Dexterity
 from pin_metaik.stewart.platform.geometry import MOST_LEGS, Geometry
 from pin_metaik.stewart.platform.limits import Limits

@@ -5,7 +5,6 @@ import pytest
 from rich.console import Console
 
 from pin_metaik.compare.report import Column, Figure, Section, Table
-from pin_metaik.compare.report import write as writing
 from pin_metaik.compare.report.show import show
 from pin_metaik.compare.report.write import markdown, markdown_table, write
 from pin_metaik.errors import MissingExtra
@@ -53,7 +52,7 @@ def test_without_figures_the_page_shows_none():
 
 
 def test_without_matplotlib_tables_are_written_and_figures_name_the_extra(tmp_path, monkeypatch):
-    monkeypatch.setattr(writing, "find_spec", lambda name: None)
+    monkeypatch.setattr("pin_metaik.lookup.find_spec", lambda name: None)
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
     write(tmp_path / "tables", "page", [], [SECTION], figures=False)
     with pytest.raises(MissingExtra, match=r"\[plots\]"):

@@ -24,7 +24,7 @@ from pin_metaik.stewart import (
     to_toml,
 )
 from pin_metaik.stewart.files.library import FOLDER
-from pin_metaik.stewart.mechanism.units import ANGLES, LENGTHS
+from pin_metaik.units import ANGLES, LENGTHS
 from tests.stewart.cases import cube, reference, stroke
 
 FILE = """

@@ -170,8 +170,8 @@ def test_the_least_workspace_keeps_dexterous_specks_out():
 
 
 def test_ctrl_c_goes_through_with_the_best_design_so_far():
-    def press(done, total):
-        if done >= 240:
+    def press(at):
+        if at.done >= 240:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt) as stop:

@@ -1,5 +1,4 @@
 from dataclasses import replace
-from time import process_time
 
 import numpy as np
 import pytest
@@ -54,19 +53,13 @@ def test_dexterity_and_volume_of_the_6x6_reference():  # A8
     assert_allclose(two.gdi, 0.2906, rtol=0, atol=0.002)
 
 
-def test_five_million_grid_points_a_second():  # A15
+def test_three_million_grid_points_have_the_known_figures():  # A15; how fast: benchmarks/stewart.py
     mechanism = stroke(100)
     grid = Grid((150, 150, 125), (-0.15, 0.15), (-0.15, 0.15), (0.1, 0.35))
-    survey(mechanism.geometry, mechanism.limits, replace(grid, counts=(5, 5, 5)))  # compiles
-    best = np.inf
-    for _ in range(3):
-        began = process_time()
-        found = survey(mechanism.geometry, mechanism.limits, grid)
-        best = min(best, process_time() - began)
+    found = survey(mechanism.geometry, mechanism.limits, grid)
     assert abs(int(found.reached.sum()) - 93229) <= 2  # a point or two may lie on the border
     assert_allclose(1e6 * found.volume, 745.8, atol=0.1)
     assert_allclose(found.gdi, 0.8763, atol=5e-5)
-    assert found.states.size / best > 5e6
 
 
 HEXAPOD = (reference().geometry, Grid((6, 6, 6), (-0.1, 0.1), (-0.1, 0.1), (0.3, 0.42)))
@@ -193,8 +186,8 @@ def test_lci_counts_only_poses_above_the_threshold():
 def test_ctrl_c_goes_through_with_what_was_seen():
     mechanism = reference()
 
-    def press(done, total):
-        if done > total / 2:
+    def press(at):
+        if at.done > at.total / 2:
             raise KeyboardInterrupt
 
     grid = Grid((100, 60, 60))
@@ -212,7 +205,7 @@ def test_ctrl_c_goes_through_with_what_was_seen():
 def test_ctrl_c_before_anything_was_seen_goes_through():
     mechanism = reference()
 
-    def press(done, total):
+    def press(at):
         raise KeyboardInterrupt
 
     grid = Grid((100, 60, 60), x=(-0.5, -0.4), y=(0, 0.1), z=(0.3, 0.4))
@@ -220,11 +213,22 @@ def test_ctrl_c_before_anything_was_seen_goes_through():
         survey(mechanism.geometry, mechanism.limits, grid, watch=press)
 
 
+def test_a_watch_ends_a_survey_that_says_so_whether_or_not_anything_was_reached():
+    mechanism = reference()
+    part = survey(mechanism.geometry, mechanism.limits, Grid((100, 60, 60)), watch=lambda at: at.done > at.total / 2)
+    assert part.volume > 0
+    assert not part.complete
+    nowhere = Grid((100, 60, 60), x=(-0.5, -0.4), y=(0, 0.1), z=(0.3, 0.4))
+    none = survey(mechanism.geometry, mechanism.limits, nowhere, watch=lambda at: True)
+    assert not none.reached.any()
+    assert not none.complete
+
+
 def test_the_watch_hears_of_every_pose():
     heard = []
     mechanism = reference()
     survey(
-        mechanism.geometry, mechanism.limits, Grid((100, 60, 60)), watch=lambda done, total: heard.append((done, total))
+        mechanism.geometry, mechanism.limits, Grid((100, 60, 60)), watch=lambda at: heard.append((at.done, at.total))
     )
     assert heard[-1] == (360_000, 360_000)
     assert len(heard) > 1

@@ -5,19 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from importlib.util import find_spec
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pin_metaik.arrays import Array
 from pin_metaik.compare.method import Answer
 from pin_metaik.compare.methods.peers.serial_arm import SerialArm
-from pin_metaik.errors import MissingExtra
 from pin_metaik.ik import IKProblem
 from pin_metaik.kinematics import Chain
-
-Array = NDArray[np.float64]
+from pin_metaik.lookup import need
 
 TOLERANCE = 1e-5  # m, rad
 
@@ -56,8 +53,7 @@ class Peer:
         Raises:
             MissingExtra: It is not.
         """
-        if find_spec(self.module) is None:
-            raise MissingExtra(f"the method {self.name!r}", self.extra)
+        need(f"the method {self.name!r}", self.extra, self.module)
 
 
 @lru_cache(maxsize=16)

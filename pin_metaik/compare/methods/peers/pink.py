@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.compare.cost import price_of, steps_within
 from pin_metaik.compare.method import Answer
-from pin_metaik.compare.methods.peers.peer import TOLERANCE, Array, Peer, Solve
+from pin_metaik.compare.methods.peers.peer import TOLERANCE, Peer, Solve
 from pin_metaik.compare.methods.peers.serial_arm import TIP, SerialArm
 
 PATIENCE, PROGRESS = 3, 0.9  # steps without a tenth of progress that end a start

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from pin_metaik.arrays import Array
 from pin_metaik.compare.cost import price_of, steps_within
 from pin_metaik.compare.method import Answer
-from pin_metaik.compare.methods.peers.peer import TOLERANCE, Array, Peer, Solve
+from pin_metaik.compare.methods.peers.peer import TOLERANCE, Peer, Solve
 from pin_metaik.compare.methods.peers.serial_arm import SerialArm
 
 DAMPING = 0.1  # of 10, 1, 0.1, 0.01 and 0.001 the one that took fewest steps over four arms

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 
+from pin_metaik.arrays import Array
 from pin_metaik.compare.method import Answer
-from pin_metaik.compare.methods.peers.peer import TOLERANCE, Array, Peer, Solve
+from pin_metaik.compare.methods.peers.peer import TOLERANCE, Peer, Solve
 from pin_metaik.compare.methods.peers.serial_arm import BASE, TIP, SerialArm
 
 SECONDS = 0.05  # a target: its rows are not reproducible, and not at equal evaluations

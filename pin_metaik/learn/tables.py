@@ -1,14 +1,12 @@
-"""The array type of this package, and the check of a table of numbers."""
+"""The check of a table of numbers."""
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array
+from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
-
-Array = NDArray[np.float64]
 
 
 def as_table(name: str, values: ArrayLike) -> Array:

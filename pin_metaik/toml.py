@@ -1,15 +1,38 @@
-"""A table of a TOML file that knows where it is, and complains with its place about what should not be there."""
+"""TOML files: read, and their tables, which know where they are and complain with their place about what is wrong."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import tomllib
+from collections.abc import Callable, Mapping
 from decimal import Decimal
-from difflib import get_close_matches
-from typing import Any
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any, TypeAlias, TypeVar
 
-from pin_metaik.errors import InvalidTable
-from pin_metaik.stewart.mechanism.ranges import Span
-from pin_metaik.stewart.mechanism.units import PURE, Unit
+from pin_metaik.errors import InvalidTable, MetaIKError
+from pin_metaik.files import known_keys, read_text
+from pin_metaik.units import PURE, Unit
+
+T = TypeVar("T")
+Span: TypeAlias = float | tuple[float, float]
+"""A value that is fixed, or the range of one that is free."""
+
+
+def read_toml(
+    path: Path | Traversable, error: type[MetaIKError] = InvalidTable, number: Callable[[str], Any] = float
+) -> dict[str, Any]:
+    """What a TOML file holds.
+
+    Args:
+        path: The file.
+        error: What to raise if it is missing or malformed; made from one sentence.
+        number: What makes a number of the text of one that is not whole: ``Decimal`` loses nothing of it.
+    """
+    text = read_text(path, error, "TOML")
+    try:
+        return tomllib.loads(text, parse_float=number)
+    except (ValueError, RecursionError) as reason:
+        raise error(f"{path} is not TOML: {reason}") from None
 
 
 class Table:
@@ -19,15 +42,7 @@ class Table:
         if not isinstance(content, dict):
             raise InvalidTable(f"{place} = {content!r} is not a table")
         self.content, self.place = content, place
-        allowed = (*needed, *optional)
-        for key in content:
-            if key not in allowed:
-                near = get_close_matches(key, allowed, n=1)
-                hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(allowed)}"
-                raise InvalidTable(f"{place}: unknown key {key!r}; {hint}")
-        for key in needed:
-            if key not in content:
-                raise InvalidTable(f"{place}: {key} is missing")
+        known_keys(content, place, InvalidTable, needed, optional)
 
     def __contains__(self, key: str) -> bool:
         return key in self.content
@@ -43,7 +58,7 @@ class Table:
             raise InvalidTable(f"{self.at(key)} is not text")
         return value
 
-    def one_of(self, key: str, known: Mapping[str, Unit]) -> Unit:
+    def one_of(self, key: str, known: Mapping[str, T]) -> T:
         """The unit that a text names."""
         name = self.text(key)
         if name not in known:

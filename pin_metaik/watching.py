@@ -1,0 +1,81 @@
+"""Long work tells how far it is, and ends when it is told to: for bars, pages, notebooks and robots."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from threading import Lock
+from typing import TypeAlias, TypeVar
+
+from pin_metaik.interrupts import Interrupted
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far some work is.
+
+    Attributes:
+        done: Steps done; what a step is, the function says: evaluations, iterations, cells, targets, rows.
+        total: Steps in all; 0 where nobody knows, as of a search with a budget in seconds.
+        best: Cost of the best found so far, where the work has one.
+        label: What is being worked on now.
+    """
+
+    done: float
+    total: float = 0
+    best: float | None = None
+    label: str = ""
+
+
+Watch: TypeAlias = Callable[[Progress], bool | None]
+"""Called with the progress as work goes on; returning True ends it, and what was found so far is returned."""
+
+
+class Stopped(Interrupted):
+    """A watch said stop. It never leaves a public function: that returns the result."""
+
+
+def tell(watch: Watch | None, progress: Progress) -> None:
+    """Tell a watch, if there is one.
+
+    Raises:
+        Stopped: It returned True.
+    """
+    if watch is not None and watch(progress) is True:
+        raise Stopped(None)
+
+
+def with_result(stop: KeyboardInterrupt, result: object) -> Interrupted:
+    """What to raise when work with something in hand was ended."""
+    return Stopped(result) if isinstance(stop, Stopped) else Interrupted(result)
+
+
+def ended(stop: KeyboardInterrupt, result: T) -> T:
+    """The result of work that a watch has ended; after Ctrl-C it is raised.
+
+    Raises:
+        Interrupted: Ctrl-C; the result goes with it.
+    """
+    if isinstance(stop, Stopped):
+        return result
+    raise Interrupted(result) from None
+
+
+class Count:
+    """Steps counted by several threads, of which one at a time tells the watch."""
+
+    def __init__(self, watch: Watch | None, total: int) -> None:
+        self._watch, self._total, self._done, self._lock = watch, total, 0, Lock()
+
+    def add(self, steps: int) -> None:
+        """So many more steps are done.
+
+        Raises:
+            Stopped: The watch says so.
+        """
+        if self._watch is not None and steps:
+            with self._lock:
+                self._done += steps
+                tell(self._watch, Progress(self._done, self._total))
