@@ -23,7 +23,7 @@ from pin_metaik.optimize import ALGORITHMS, AskTell, Budget
 from pin_metaik.output import writable
 
 if TYPE_CHECKING:  # shapely is an extra, and none of the other commands should wait for it
-    from pin_metaik.mobile import PathPlan, Scene, SynchroDrive, TrajectoryPlan
+    from pin_metaik.mobile import PathPlan, Scene, Vehicle, TrajectoryPlan
 
 UNITS = {"length": "that of the scene, m with a trajectory", "angle": "rad", "time": "s"}
 MARGIN = 0.1  # m, when a trajectory is wanted: curves need room inside the corners
@@ -66,7 +66,8 @@ def plan(
     ] = None,
     resolution: Annotated[float | None, typer.Option(help="Of a .npy: width of a cell, m; default: 1.")] = None,
     vehicle: Annotated[
-        str, typer.Option(help="Whose limits the trajectory keeps: nomad200, nomad200_driver, or a .json with others.")
+        str, typer.Option(help="Whose limits the trajectory keeps: nomad200, nomad200_driver, turtlebot3_burger, turtlebot3_waffle, or a "
+            ".json with others.")
     ] = "nomad200",
     paths: Annotated[
         int, typer.Option(min=1, help="Homotopy classes to try; with a trajectory the quickest of them counts.")
@@ -165,7 +166,7 @@ def _scene(source: str, start: Place, goal: Place, clearance: float, cells: dict
 
 
 def _motions(
-    plans: list[PathPlan], robot: SynchroDrive, radius: float, method: str, rng: int
+    plans: list[PathPlan], robot: Vehicle, radius: float, method: str, rng: int
 ) -> Iterator[TrajectoryPlan]:
     from pin_metaik import mobile
     from pin_metaik.learn import OutsideTraining

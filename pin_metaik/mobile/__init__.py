@@ -23,7 +23,17 @@ from pin_metaik.mobile.motion.result import TrajectoryPlan
 from pin_metaik.mobile.motion.route import Route
 from pin_metaik.mobile.motion.timing import plan_trajectory
 from pin_metaik.mobile.motion.trajectory import Samples, Trajectory
-from pin_metaik.mobile.motion.vehicle import NOMAD_200, NOMAD_200_DRIVER, VEHICLES, SynchroDrive, load_vehicle
+from pin_metaik.mobile.motion.vehicle import (
+    NOMAD_200,
+    NOMAD_200_DRIVER,
+    TURTLEBOT3_BURGER,
+    TURTLEBOT3_WAFFLE,
+    VEHICLES,
+    DifferentialDrive,
+    SynchroDrive,
+    Vehicle,
+    load_vehicle,
+)
 from pin_metaik.mobile.paths.exact import shortest_path
 from pin_metaik.mobile.paths.fitness import FITNESSES, ExactFitness, Fitness, PaperFitness
 from pin_metaik.mobile.paths.homotopy import shortest_paths
@@ -42,8 +52,11 @@ __all__ = [
     "FITNESSES",
     "NOMAD_200",
     "NOMAD_200_DRIVER",
+    "TURTLEBOT3_BURGER",
+    "TURTLEBOT3_WAFFLE",
     "VEHICLES",
     "Blocked",
+    "DifferentialDrive",
     "ExactFitness",
     "Fitness",
     "FreeSpace",
@@ -62,6 +75,7 @@ __all__ = [
     "SynchroDrive",
     "Trajectory",
     "TrajectoryPlan",
+    "Vehicle",
     "Visibility",
     "configurations",
     "fastest_trajectory",

@@ -127,8 +127,9 @@ def draw_trajectory(figure: Any, plan: TrajectoryPlan, scene: Scene) -> None:
     speed.axhline(vehicle.v_max, color=GREY, linewidth=0.8, linestyle=":", label="limit")
     speed.set_ylabel("speed, m/s")
     turning.plot(samples.t, np.degrees(samples.omega), color=RED)
-    for limit, name in ((-vehicle.omega_max, None), (vehicle.omega_max, "limits")):
-        turning.axhline(np.degrees(limit), color=GREY, linewidth=0.8, linestyle=":", label=name)
+    for side, name in ((-1, None), (1, "limits")):
+        limit = side * np.degrees(vehicle.omega_at(samples.v))
+        turning.plot(samples.t, limit, color=GREY, linewidth=0.8, linestyle=":", label=name)
     turning.set_ylabel("turning, deg/s")
     if plan.obstacles:
         clear.plot(
