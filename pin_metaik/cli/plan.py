@@ -66,8 +66,11 @@ def plan(
     ] = None,
     resolution: Annotated[float | None, typer.Option(help="Of a .npy: width of a cell, m; default: 1.")] = None,
     vehicle: Annotated[
-        str, typer.Option(help="Whose limits the trajectory keeps: nomad200, nomad200_driver, turtlebot3_burger, turtlebot3_waffle, or a "
-            ".json with others.")
+        str,
+        typer.Option(
+            help="Whose limits the trajectory keeps: nomad200, nomad200_driver, turtlebot3_burger, turtlebot3_waffle, or a "
+            ".json with others."
+        ),
     ] = "nomad200",
     paths: Annotated[
         int, typer.Option(min=1, help="Homotopy classes to try; with a trajectory the quickest of them counts.")
@@ -165,9 +168,7 @@ def _scene(source: str, start: Place, goal: Place, clearance: float, cells: dict
     return mobile.random_scene(int(count or 15), int(seed), gap=gap, start=start, goal=goal)
 
 
-def _motions(
-    plans: list[PathPlan], robot: Vehicle, radius: float, method: str, rng: int
-) -> Iterator[TrajectoryPlan]:
+def _motions(plans: list[PathPlan], robot: Vehicle, radius: float, method: str, rng: int) -> Iterator[TrajectoryPlan]:
     from pin_metaik import mobile
     from pin_metaik.learn import OutsideTraining
 

@@ -16,13 +16,14 @@ if find_spec("shapely") is None:
     raise MissingExtra("planning for mobile robots", "mobile")
 
 from pin_metaik.mobile.body import configurations, mobile_robot, velocities
-from pin_metaik.mobile.errors import Blocked, LooksLikeDegrees, NoPath
+from pin_metaik.mobile.errors import Blocked, LooksLikeDegrees, NoPath, NoRoom
 from pin_metaik.mobile.motion.fastest import fastest_trajectory
 from pin_metaik.mobile.motion.learned import LearnedTurn, learn_turn
+from pin_metaik.mobile.motion.replanning import plan_in_motion, replan
 from pin_metaik.mobile.motion.result import TrajectoryPlan
 from pin_metaik.mobile.motion.route import Route
 from pin_metaik.mobile.motion.timing import plan_trajectory
-from pin_metaik.mobile.motion.trajectory import Samples, Trajectory
+from pin_metaik.mobile.motion.trajectory import Samples, State, Trajectory
 from pin_metaik.mobile.motion.vehicle import (
     NOMAD_200,
     NOMAD_200_DRIVER,
@@ -63,6 +64,7 @@ __all__ = [
     "LearnedTurn",
     "LooksLikeDegrees",
     "NoPath",
+    "NoRoom",
     "OccupancyGrid",
     "PaperFitness",
     "Path",
@@ -72,6 +74,7 @@ __all__ = [
     "Route",
     "Samples",
     "Scene",
+    "State",
     "SynchroDrive",
     "Trajectory",
     "TrajectoryPlan",
@@ -85,12 +88,14 @@ __all__ = [
     "load_vehicle",
     "mobile_robot",
     "plan_alternatives",
+    "plan_in_motion",
     "plan_path",
     "plan_trajectory",
     "random_scene",
     "read_grid",
     "read_obstacles",
     "read_polygons",
+    "replan",
     "scene_names",
     "shortest_path",
     "shortest_paths",

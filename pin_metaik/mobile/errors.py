@@ -58,6 +58,24 @@ class NoPath(MetaIKError):
         super().__init__(f"{where}: {why}{hint}")
 
 
+class NoRoom(MetaIKError):
+    """A robot in motion for which nothing that was tried keeps clear of the obstacles.
+
+    Attributes:
+        place: Where it is (x, y).
+        v: Its speed, m/s.
+        stop: Where it stands if it brakes straight ahead at once (x, y).
+        radius: Distance to keep from obstacles, m.
+    """
+
+    def __init__(self, place: Point, v: float, stop: Point, radius: float) -> None:
+        self.place, self.v, self.stop, self.radius = place, v, stop, radius
+        super().__init__(
+            f"from {_shown(place)} at {v:g} m/s nothing that was tried keeps {radius:g} m from the obstacles; braking "
+            f"ends at {_shown(stop)}. A lower speed may, or more paths, or another margin"
+        )
+
+
 def _shown(point: Point) -> str:
     """A place with the digits that tell it from its neighbours, in maps with large coordinates, too."""
     return f"({point[0]:.12g}, {point[1]:.12g})"

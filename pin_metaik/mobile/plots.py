@@ -118,7 +118,8 @@ def draw_trajectory(figure: Any, plan: TrajectoryPlan, scene: Scene) -> None:
         world.add_patch(_disc(samples.xy[k], plan.radius))
     world.set(xlabel="x, m", ylabel="y, m")
     verdict = "" if plan.success else ", collides" if not plan.collision_free else ", misses the goal"
-    said = f"{plan.method}: driven in {plan.time:.2f} s, with stops at all corners {plan.stop_and_turn:.2f} s{verdict}"
+    stops = f", with stops at all corners {plan.stop_and_turn:.2f} s" if np.isfinite(plan.stop_and_turn) else ""
+    said = f"{plan.method}: driven in {plan.time:.2f} s{stops}{verdict}"
     world.set_title(said, fontsize="medium", color="black" if plan.success else RED)
 
     vehicle = plan.route.vehicle

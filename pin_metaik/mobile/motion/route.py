@@ -71,7 +71,7 @@ class Route:
             InvalidGeometry: The path turns back on itself.
         """
         for role, speed in zip(("start", "goal"), ends, strict=True):
-            within(f"the speed at the {role}", speed, 0, vehicle.v_max)
+            within(f"the speed at the {role}", speed, 0, vehicle.v_max * (1 + FLAT))
         path = path.straightened(FLAT)
         along = np.diff(path.points, axis=0)
         into, out = along[:-1], along[1:]

@@ -98,6 +98,7 @@ def plan_trajectory(
             seed=int(rng) if isinstance(rng, (int, np.integer)) else None,
             interrupted=speeds.interrupted,
             learned=None if turns is None else turns.report(speeds.v),
+            goal=tuple(route.path.points[-1].tolist()),
         )
 
     return wrapped(lambda: _speeds(route, method, algorithm, budget, rng, turns, callback), planned)
@@ -124,7 +125,7 @@ def drive(route: Route, v: Array, tangents: Array | None = None) -> Trajectory:
                 phases.append(Phase(t, 0.0, alpha, omega))
                 omega += alpha * t
     dx, dy = route.path.points[1] - route.path.points[0]
-    return Trajectory(phases, (*route.path.points[0].tolist(), float(np.arctan2(dy, dx))))
+    return Trajectory(phases, (*route.path.points[0].tolist(), float(np.arctan2(dy, dx))), start)
 
 
 def _speeds(

@@ -149,7 +149,7 @@ NOMAD_200_DRIVER = SynchroDrive("nomad200_driver", 20 * INCH, 30 * INCH, math.ra
 # ROBOTIS' data sheets: 0.22 and 0.26 m/s, wheels of 33 mm radius 160 and 287 mm apart. The sheets' 2.84 and 1.82 rad/s
 # are these wheels turning on the spot at full speed (2.75 and 1.81), so that both at once would ask for twice as much.
 # The sheets give no acceleration: 1 m/s^2 is that of ROBOTIS' Gazebo models; radii are those of its navigation settings.
-TURTLEBOT3_BURGER = DifferentialDrive("turtlebot3_burger", 0.160, 0.22, 1.0, 0.1)
+TURTLEBOT3_BURGER = DifferentialDrive("turtlebot3_burger", 0.160, 0.22, 1.0, 0.105)
 TURTLEBOT3_WAFFLE = DifferentialDrive("turtlebot3_waffle", 0.287, 0.26, 1.0, 0.22)
 
 VEHICLES: dict[str, Vehicle] = {
