@@ -23,7 +23,7 @@ from pin_metaik.optimize import ALGORITHMS, AskTell, Budget
 from pin_metaik.output import writable
 
 if TYPE_CHECKING:  # shapely is an extra, and none of the other commands should wait for it
-    from pin_metaik.mobile import PathPlan, Scene, Vehicle, TrajectoryPlan
+    from pin_metaik.mobile import PathPlan, Scene, TrajectoryPlan, Vehicle
 
 UNITS = {"length": "that of the scene, m with a trajectory", "angle": "rad", "time": "s"}
 MARGIN = 0.1  # m, when a trajectory is wanted: curves need room inside the corners
@@ -68,8 +68,8 @@ def plan(
     vehicle: Annotated[
         str,
         typer.Option(
-            help="Whose limits the trajectory keeps: nomad200, nomad200_driver, turtlebot3_burger, turtlebot3_waffle, or a "
-            ".json with others."
+            help="Whose limits the trajectory keeps: nomad200, nomad200_driver, turtlebot3_burger, turtlebot3_waffle, "
+            "or a .json with others."
         ),
     ] = "nomad200",
     paths: Annotated[

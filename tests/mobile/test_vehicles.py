@@ -51,7 +51,7 @@ def scaled_down(bot, share):
 @pytest.mark.parametrize("bot", BOTS, ids=lambda bot: bot.name)
 def test_no_wheel_is_asked_for_more_than_it_does_and_omega_scaled_down_is_slower(bot):
     for seed in range(8):
-        scene = random_scene(15, seed, gap=2 * bot.radius + 0.3)
+        scene = random_scene(10, seed, gap=2 * bot.radius + 0.6)
         path = PathProblem.of(scene, bot.radius, 0.1).optimum
         plan = plan_trajectory(path, bot, scene.obstacles)
         speeds, accelerations = wheel_rates(plan)

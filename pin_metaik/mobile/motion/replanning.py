@@ -16,6 +16,7 @@ from pin_metaik.mobile.errors import Blocked, NoPath, NoRoom
 from pin_metaik.mobile.motion.joining import Joining, backwards, joining, straightening
 from pin_metaik.mobile.motion.result import TrajectoryPlan
 from pin_metaik.mobile.motion.route import Route
+from pin_metaik.mobile.motion.speeds import ROUNDS as MANY
 from pin_metaik.mobile.motion.speeds import optimal_speeds
 from pin_metaik.mobile.motion.timing import drive
 from pin_metaik.mobile.motion.trajectory import State, Trajectory
@@ -29,6 +30,7 @@ from pin_metaik.optimize.settings import few, within
 from pin_metaik.optimize.space import Array
 
 SPEEDS = 4  # tried at either end, besides the state's own
+FEW, NEAR = 5, 1e-3  # rounds of a search for speeds that only compares, and how near to the best it surely is
 ROUNDS, SETTLED = 60, 1e-13  # at most, until the two ends of a path without corners see each other; m
 ROUNDING = 1e-9  # of the largest speed and turning rate; a state read from a trajectory may be as much beyond them
 MARGIN = 0.1  # m
@@ -169,18 +171,20 @@ def _quickest(
 ) -> TrajectoryPlan | None:
     """The quickest motion that keeps clear, below a limit in s; else the first that does not; None if there is none.
 
-    Obstacles make corners slower, so the time without them is a bound: motions are made for the best bounds first, until
-    the next bound is no better than what is found.
+    Obstacles make corners slower, so the time without them is a bound: motions are made for the best bounds first,
+    until the next bound is no better than what is found.
     """
     began = perf_counter()
     corners = path.corners if len(path.corners) else np.empty((0, 2))
     last = path.points[-1]
 
-    def made(ends: tuple[Joining, Joining | None], obstacles: tuple[shapely.Geometry, ...]) -> TrajectoryPlan | None:
+    def made(
+        ends: tuple[Joining, Joining | None], obstacles: tuple[shapely.Geometry, ...], rounds: int
+    ) -> TrajectoryPlan | None:
         on, off = ends
         points = np.vstack((on.end[:2], corners, last if off is None else off.end[:2]))
         route = Route.along(Path(points), vehicle, obstacles, keep, (on.v, 0.0 if off is None else off.v))
-        speeds = optimal_speeds(route)
+        speeds = optimal_speeds(route, rounds)
         if not np.isfinite(speeds.time):
             return None
         away = [] if off is None else backwards(off.phases)
@@ -203,12 +207,12 @@ def _quickest(
     firsts = _speeds(start, vehicle)
     finals = [0.0] if goal is None else _speeds(goal, vehicle)
     joined = [_ends(start, first, goal, final, corners, last, vehicle) for first, final in product(firsts, finals)]
-    bounds = [(bound.time, ends) for ends in joined if ends is not None and (bound := made(ends, ())) is not None]
+    bounds = [(bound.time, ends) for ends in joined if ends is not None and (bound := made(ends, (), FEW)) is not None]
     best: TrajectoryPlan | None = None
     for bound, ends in sorted(bounds, key=lambda entry: entry[0]):
-        if bound >= (best.time if best is not None and best.success else limit):
+        if bound >= (1 + NEAR) * (best.time if best is not None and best.success else limit):
             break
-        plan = made(ends, solid)
+        plan = made(ends, solid, MANY)
         if plan is not None and (best is None or (plan.success, -plan.time) > (best.success, -best.time)):
             best = plan
     return best

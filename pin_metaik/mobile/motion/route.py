@@ -136,9 +136,9 @@ class Route:
     def clear_speed(self, corner: int, obstacles: Sequence[shapely.Geometry], radius: float) -> float:
         """The largest speed up to the cap at which the curve, and all between it and the corner, keeps the radius.
 
-        The faster the robot, the larger the curve's radius where it has a given direction, whether its curves are copies
-        of each other in different sizes or have longer arcs. So each lies between the corner and all faster ones, what
-        is free at one speed is free at all below it, and halving the interval finds the largest.
+        The faster the robot, the larger the curve's radius where it has a given direction, whether its curves are
+        copies of each other in different sizes or have longer arcs. So each lies between the corner and all faster
+        ones, what is free at one speed is free at all below it, and halving the interval finds the largest.
         """
         if not 0 <= corner < len(self.caps):
             raise InvalidSetting(f"corner is 0 to {len(self.caps) - 1}, got {corner}")

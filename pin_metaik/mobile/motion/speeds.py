@@ -17,7 +17,7 @@ from pin_metaik.optimize.space import Array
 COARSE, FINE = 101, 17  # speeds a corner, in the first round and in those that look closer
 SHRINK, SMALLEST = 0.45, 1e-9  # how much smaller a window becomes, and where it ends, of the cap
 ROUNDS = 80  # at most; 25 if no window has to follow its best
-NEWTON, STEP = 5, 1e-6  # iterations, and what derivatives are differences over, of the speed
+NEWTON, STEP = 4, 1e-6  # iterations, and what derivatives are differences over, of the speed
 CHAIN = 3  # corners that full acceleration or no straight at all may tie to one before
 
 Tangents = Callable[[Array], Array]
@@ -40,20 +40,20 @@ class Speeds:
     interrupted: bool = False
 
 
-def optimal_speeds(route: Route) -> Speeds:
+def optimal_speeds(route: Route, rounds: int = ROUNDS) -> Speeds:
     """The best speeds by dynamic programming over grids: only neighbours share a straight.
 
     The grid closes in on the best choice of the round before, which it contains: the time never rises. Where a straight
     is as short as it may be, its two speeds can only move together, along a line that no grid of single speeds follows:
     so every grid has the speeds, too, that are the largest possible after those of the corners before. A window becomes
-    smaller only once its best is well inside.
+    smaller only once its best is well inside. A few rounds are enough to tell routes apart.
     """
     vehicle, n = route.vehicle, len(route.caps)
     if n == 0:
         return Speeds(np.empty(0), route.stop_and_turn, 1)
     v, time, spent = np.empty(n), np.inf, 0
     centre, window = route.caps / 2, route.caps / 2
-    for count in (COARSE, *[FINE] * ROUNDS):
+    for count in (COARSE, *[FINE] * rounds):
         single = centre[:, None] + window[:, None] * np.linspace(-1, 1, count)  # its middle is the best so far
         grid = _tied(route, np.clip(single, 0, route.caps[:, None]))
         tangents, turning = (np.ascontiguousarray(of.T) for of in (route.tangents(grid.T), route.turning(grid.T)))

@@ -2,9 +2,9 @@
 
 The robot leaves the incoming line a tangent length ``alpha = v g(theta)`` before the corner and meets the outgoing one
 as far behind it. Its curve is a piece of clothoid, perhaps an arc, and the clothoid backwards: curvature is continuous.
-With a synchro-drive everything scales with the speed v, so ``g`` and ``e`` say all about the shape, and the time does not
-depend on v. A differential drive turns the more slowly the faster it drives, so its curves at higher speeds have longer
-arcs; what follows holds at each speed.
+With a synchro-drive everything scales with the speed v, so ``g`` and ``e`` say all about the shape, and the time does
+not depend on v. A differential drive turns the more slowly the faster it drives, so its curves at higher speeds have
+longer arcs; what follows holds at each speed.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ STILL = 1e-12  # m/s; a wheel always has so much left for turning, which nobody 
 @checked
 @dataclass(frozen=True)
 class SynchroDrive:
-    """All wheels roll and steer together: ``x' = v cos theta``, ``y' = v sin theta``, ``theta' = omega``, and four limits.
+    """Wheels that roll and steer together: ``x' = v cos theta``, ``y' = v sin theta``, ``theta' = omega``, four limits.
 
     Attributes:
         name: What to call it.
@@ -148,7 +148,7 @@ NOMAD_200_DRIVER = SynchroDrive("nomad200_driver", 20 * INCH, 30 * INCH, math.ra
 
 # ROBOTIS' data sheets: 0.22 and 0.26 m/s, wheels of 33 mm radius 160 and 287 mm apart. The sheets' 2.84 and 1.82 rad/s
 # are these wheels turning on the spot at full speed (2.75 and 1.81), so that both at once would ask for twice as much.
-# The sheets give no acceleration: 1 m/s^2 is that of ROBOTIS' Gazebo models; radii are those of its navigation settings.
+# The sheets give no acceleration: 1 m/s^2 is that of ROBOTIS' Gazebo models; radii are of its navigation settings.
 TURTLEBOT3_BURGER = DifferentialDrive("turtlebot3_burger", 0.160, 0.22, 1.0, 0.105)
 TURTLEBOT3_WAFFLE = DifferentialDrive("turtlebot3_waffle", 0.287, 0.26, 1.0, 0.22)
 
