@@ -16,7 +16,11 @@ if find_spec("shapely") is None:
     raise MissingExtra("planning for mobile robots", "mobile")
 
 from pin_metaik.mobile.body import configurations, mobile_robot, velocities
-from pin_metaik.mobile.errors import Blocked, LooksLikeDegrees, NoPath, NoRoom
+from pin_metaik.mobile.curves.curve import Curve
+from pin_metaik.mobile.curves.footprint import Contact, Footprint, first_contact
+from pin_metaik.mobile.curves.shortest import shortest_curve
+from pin_metaik.mobile.curves.through import curve_through
+from pin_metaik.mobile.errors import Blocked, LooksLikeDegrees, NoPath, NoRoom, Obstructed
 from pin_metaik.mobile.motion.fastest import fastest_trajectory
 from pin_metaik.mobile.motion.learned import LearnedTurn, learn_turn
 from pin_metaik.mobile.motion.replanning import plan_in_motion, replan
@@ -57,14 +61,18 @@ __all__ = [
     "TURTLEBOT3_WAFFLE",
     "VEHICLES",
     "Blocked",
+    "Contact",
+    "Curve",
     "DifferentialDrive",
     "ExactFitness",
     "Fitness",
+    "Footprint",
     "FreeSpace",
     "LearnedTurn",
     "LooksLikeDegrees",
     "NoPath",
     "NoRoom",
+    "Obstructed",
     "OccupancyGrid",
     "PaperFitness",
     "Path",
@@ -81,7 +89,9 @@ __all__ = [
     "Vehicle",
     "Visibility",
     "configurations",
+    "curve_through",
     "fastest_trajectory",
+    "first_contact",
     "grid_of",
     "learn_turn",
     "load_scene",
@@ -97,6 +107,7 @@ __all__ = [
     "read_polygons",
     "replan",
     "scene_names",
+    "shortest_curve",
     "shortest_path",
     "shortest_paths",
     "velocities",

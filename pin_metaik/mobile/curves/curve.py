@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path as File
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.mobile.motion.trajectory import Moved
 from pin_metaik.mobile.paths.path import write_table
 from pin_metaik.optimize.settings import MANY
 from pin_metaik.optimize.space import Array
@@ -20,18 +20,6 @@ Pose = tuple[float, float, float]
 
 BENDS = {"L": 1.0, "S": 0.0, "R": -1.0}
 STEP = 0.05  # m
-
-
-class Moved(NamedTuple):
-    """How far anything between two places of a motion is from the middle of the two at most.
-
-    Attributes:
-        travel: m.
-        turn: rad.
-    """
-
-    travel: Array
-    turn: Array
 
 
 @checked

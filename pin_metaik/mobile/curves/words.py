@@ -1,13 +1,13 @@
 """The shortest curves of bounded curvature between two poses, by closed forms: forwards only, and with reversing.
 
-Forwards only: Dubins, "On curves of minimal length with a constraint on average curvature", 1957. A shortest curve is one
-of LSL, LSR, RSL, RSR, LRL and RLR. With reversing: Reeds and Shepp, "Optimal paths for a car that goes both forwards and
-backwards", 1990, section 8; the formulas' numbers are theirs. Each formula is of one word; the others are its mirror
-images in time (all is driven backwards), in space (left is right) and in order (from the goal to the start).
+Forwards only: Dubins, "On curves of minimal length with a constraint on average curvature", 1957. A shortest curve is
+one of LSL, LSR, RSL, RSR, LRL and RLR. With reversing: Reeds and Shepp, "Optimal paths for a car that goes both
+forwards and backwards", 1990, section 8; the formulas' numbers are theirs. Each formula is of one word; the others are
+its mirror images in time (all is driven backwards), in space (left is right) and in order (from the goal to the start).
 
 All is for radius 1 and a start at the origin along x. A formula yields signed lengths (3 to 5, n), NaN where its word
-does not lead to the goal. Whatever it yields does lead there, so signs need no looking at: no curve is left out, and the
-shortest of all is the shortest there is.
+does not lead to the goal. Whatever it yields does lead there, so signs need no looking at: no curve is left out, and
+the shortest of all is the shortest there is.
 """
 
 from __future__ import annotations

@@ -22,6 +22,18 @@ from pin_metaik.output import writable
 SAMPLES = 0.02  # s
 
 
+class Moved(NamedTuple):
+    """How far anything between two places of a motion is from the middle of the two at most.
+
+    Attributes:
+        travel: Of the robot's point (n,), m.
+        turn: (n,), rad.
+    """
+
+    travel: Array
+    turn: Array
+
+
 class Phase(NamedTuple):
     """A stretch of time with constant accelerations, of which one at most is not zero while the robot moves.
 
@@ -147,6 +159,25 @@ class Trajectory:
         at = self.at(t)
         v = max(float(at.v[0]), 0.0)  # by rounding it may be below, at rest
         return State(float(at.x[0]), float(at.y[0]), float(at.heading[0]), v, float(at.omega[0]))
+
+    @checked
+    def poses(self, s: ArrayLike) -> Array:
+        """Poses (n, 3) at times s (n,), in s: x, y in m and the heading in rad."""
+        at = self.at(s)
+        return np.column_stack((at.x, at.y, at.heading))
+
+    @checked
+    def moved(self, a: Array, b: Array) -> Moved:
+        """How far all between times a and b (n,), in s, of one phase is at most from the middle of the two.
+
+        In a phase speed and turning rate change evenly, so none is larger than at one of the two ends.
+        """
+        middle, half = (a + b) / 2, (b - a) / 2
+        k = np.clip(np.searchsorted(self._begins, middle, side="right") - 1, 0, max(len(self.phases) - 1, 0))
+        _, acceleration, alpha, _ = np.array(self.phases or [(0.0, 0.0, 0.0, 0.0)])[k].T
+        at = self.at(middle)
+        fastest, turning = np.abs(at.v) + np.abs(acceleration) * half, np.abs(at.omega) + np.abs(alpha) * half
+        return Moved(fastest * half, turning * half)
 
     @property
     def boundaries(self) -> Array:
