@@ -80,6 +80,10 @@ def plan(
     seeded: Annotated[bool, typer.Option("--seeded", help="Start one individual at the shortest path.")] = False,
     rng: Annotated[int, typer.Option(min=0, help="Seed of every random choice.")] = 0,
     out: Annotated[Path | None, typer.Option(help="Folder for scene, path and trajectory: JSON, CSV, PNG.")] = None,
+    ros: Annotated[
+        Path | None,
+        typer.Option(help="A .yaml or .json for the path as a nav_msgs/Path; with a trajectory its poses and times."),
+    ] = None,
     figures: Annotated[bool, typer.Option(help="Draw figures into --out; needs the extra plots.")] = True,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
@@ -88,11 +92,14 @@ def plan(
     Exit code 0: planned, 1: what was found collides, 2: the call makes no sense, 130: interrupted.
     """
     from pin_metaik import mobile
+    from pin_metaik.mobile.ros import ros_file
 
     if out is not None:
         writable(out, folder=True)
         if figures:
             need_figures()
+    if ros is not None:
+        ros_file(ros)
     if trajectory is not None and trajectory not in TRAJECTORIES:
         raise InvalidSetting(f"no trajectory {trajectory!r}; known: {', '.join(TRAJECTORIES)}")
     if paths > 1 and method != "exact":
@@ -140,6 +147,9 @@ def plan(
     if out is not None:
         for file in _write(out, plans, best, found, motion, figures):
             Console(stderr=as_json).print(str(file), markup=False, highlight=False, soft_wrap=True)
+    if ros is not None:
+        mobile.write_nav_path(ros, plans[best].path if motion is None else motion.trajectory)
+        Console(stderr=as_json).print(str(ros), markup=False, highlight=False, soft_wrap=True)
     if path.interrupted or any(each.interrupted for each in motions):
         raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if path.success and (motion is None or motion.success) else 1)

@@ -47,6 +47,7 @@ from pin_metaik.mobile.paths.planning import plan_alternatives, plan_path
 from pin_metaik.mobile.paths.problem import PathProblem
 from pin_metaik.mobile.paths.result import PathPlan, PathStatus
 from pin_metaik.mobile.paths.visibility import Visibility
+from pin_metaik.mobile.ros import nav_path, write_nav_path
 from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.grids import OccupancyGrid, grid_of, read_grid
 from pin_metaik.mobile.world.polygons import read_obstacles, read_polygons
@@ -97,6 +98,7 @@ __all__ = [
     "load_scene",
     "load_vehicle",
     "mobile_robot",
+    "nav_path",
     "plan_alternatives",
     "plan_in_motion",
     "plan_path",
@@ -111,4 +113,5 @@ __all__ = [
     "shortest_path",
     "shortest_paths",
     "velocities",
+    "write_nav_path",
 ]
