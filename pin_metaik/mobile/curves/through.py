@@ -61,9 +61,10 @@ def curve_through(
     solid = read_obstacles(obstacles)
     outline = Footprint.disc(0.0) if footprint is None else footprint
     points = path.points[np.concatenate(([True], path.lengths > 0))]
-    free = np.linspace(-np.pi, np.pi, HEADINGS, endpoint=False)
     fixed = [start_heading, *[None] * (len(points) - 2), goal_heading][: len(points)]
-    grids = [free if heading is None else np.array([heading]) for heading in fixed]
+    grids = [
+        free if heading is None else np.array([heading]) for heading, free in zip(fixed, _headings(points), strict=True)
+    ]
     legs = [_Leg(points[i], points[i + 1], turning_radius, reverse, solid, outline) for i in range(len(points) - 1)]
     best = _best(legs, grids)
     window = np.pi / HEADINGS
@@ -74,6 +75,16 @@ def curve_through(
         best, window = _best(legs, closer), SHRINK * window
     pieces = [leg.curve(a, b) for leg, a, b in zip(legs, best[:-1], best[1:], strict=True)]
     return joined(pieces) if pieces else Curve((*points[0].tolist(), best[0]), turning_radius, "", ())
+
+
+def _headings(points: Array) -> list[Array]:
+    """Headings to try at points (n, 2): all around, along the segments before and after, and half way between."""
+    around = np.linspace(-np.pi, np.pi, HEADINGS, endpoint=False)
+    along = np.diff(points[:, 0] + 1j * points[:, 1])
+    along = along / np.abs(along)
+    before, after = np.concatenate((along[:1], along)), np.concatenate((along, along[-1:]))
+    own = np.angle(np.stack((before, after, before + after), axis=1))
+    return [np.union1d(around, headings) for headings in own] if len(along) else [around] * len(points)
 
 
 class _Leg:
