@@ -182,7 +182,7 @@ def _motions(plans: list[PathPlan], robot: Vehicle, radius: float, method: str, 
     from pin_metaik import mobile
     from pin_metaik.learn import OutsideTraining
 
-    model = mobile.learn_turn(robot) if method == "ann" else None
+    model = mobile.learn_turn(robot) if method == "ann" and isinstance(robot, mobile.SynchroDrive) else None
     for plan in plans:
         with _progress("trajectory") as tick, warnings.catch_warnings():
             warnings.simplefilter("ignore", OutsideTraining)  # the plan's notes say it

@@ -65,7 +65,7 @@ class Curve:
     def cusps(self) -> Array:
         """Places (c,) along the curve, in m, where it changes between forwards and backwards."""
         driven = np.array(self.lengths)[np.array(self.lengths) != 0.0]
-        return np.cumsum(np.abs(driven))[:-1][np.diff(np.sign(driven)) != 0]
+        return np.asarray(np.cumsum(np.abs(driven))[:-1][np.diff(np.sign(driven)) != 0])
 
     @property
     def boundaries(self) -> Array:
@@ -86,7 +86,8 @@ class Curve:
     @checked
     def moved(self, a: Array, b: Array) -> Moved:
         """How far all between places a and b (n,), in m, is at most from the middle of the two."""
-        half = (b - a) / 2
+        a = array("a", a, "n")
+        half = (array("b", b, len(a)) - a) / 2
         return Moved(half, half / self.radius)
 
     @checked

@@ -9,16 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidGeometry
-from pin_metaik.mobile.curves.curve import Pose
-from pin_metaik.mobile.motion.trajectory import Moved
+from pin_metaik.mobile.curves.curve import Curve, Pose
+from pin_metaik.mobile.motion.trajectory import Trajectory
 from pin_metaik.mobile.world.polygons import read_obstacles
 from pin_metaik.optimize.settings import within
 from pin_metaik.optimize.space import Array
@@ -26,18 +25,7 @@ from pin_metaik.optimize.space import Array
 TOLERANCE = 1e-6  # m
 
 
-class Motion(Protocol):
-    """A curve, over its length in m, or a trajectory, over its time in s."""
-
-    @property
-    def boundaries(self) -> Array:
-        """Where its pieces begin, and where the last ends (p + 1,)."""
-
-    def poses(self, s: ArrayLike) -> Array:
-        """Poses (n, 3) at places s (n,): x, y in m and the heading in rad."""
-
-    def moved(self, a: Array, b: Array) -> Moved:
-        """How far all between places a and b (n,) of one piece is at most from the middle of the two."""
+Motion = Curve | Trajectory  # over its length in m, or over its time in s
 
 
 @checked

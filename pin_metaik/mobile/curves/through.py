@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
-from pin_metaik.arguments import array, checked
+from pin_metaik.arguments import array, checked, number
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.mobile.curves.curve import Curve, Pose, joined
 from pin_metaik.mobile.curves.footprint import Contact, Footprint, first_contact
@@ -61,6 +61,9 @@ def curve_through(
     solid = read_obstacles(obstacles)
     outline = Footprint.disc(0.0) if footprint is None else footprint
     points = path.points[np.concatenate(([True], path.lengths > 0))]
+    for name, heading in (("start_heading", start_heading), ("goal_heading", goal_heading)):
+        if heading is not None:
+            number(name, heading)
     fixed = [start_heading, *[None] * (len(points) - 2), goal_heading][: len(points)]
     grids = [
         free if heading is None else np.array([heading]) for heading, free in zip(fixed, _headings(points), strict=True)
@@ -113,7 +116,7 @@ class _Leg:
         if self.met:
             pairs = zip(first.tolist(), second.tolist(), strict=True)
             found[[self.met.get(pair) is not None for pair in pairs]] = np.inf
-        return found.reshape(len(into), len(out))
+        return np.asarray(found.reshape(len(into), len(out)))
 
     def curve(self, a: float, b: float) -> Curve:
         start: Pose = (float(self.a[0]), float(self.a[1]), a)

@@ -207,7 +207,7 @@ def _quickest(
     firsts = _speeds(start, vehicle)
     finals = [0.0] if goal is None else _speeds(goal, vehicle)
     joined = [_ends(start, first, goal, final, corners, last, vehicle) for first, final in product(firsts, finals)]
-    bounds = [(bound.time, ends) for ends in joined if ends is not None and (bound := made(ends, (), FEW)) is not None]
+    bounds = [(plan.time, ends) for ends in joined if ends is not None and (plan := made(ends, (), FEW)) is not None]
     best: TrajectoryPlan | None = None
     for bound, ends in sorted(bounds, key=lambda entry: entry[0]):
         if bound >= (1 + NEAR) * (best.time if best is not None and best.success else limit):

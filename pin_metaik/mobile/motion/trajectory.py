@@ -172,6 +172,8 @@ class Trajectory:
 
         In a phase speed and turning rate change evenly, so none is larger than at one of the two ends.
         """
+        a = array("a", a, "n")
+        b = array("b", b, len(a))
         middle, half = (a + b) / 2, (b - a) / 2
         k = np.clip(np.searchsorted(self._begins, middle, side="right") - 1, 0, max(len(self.phases) - 1, 0))
         _, acceleration, alpha, _ = np.array(self.phases or [(0.0, 0.0, 0.0, 0.0)])[k].T

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.mobile.files import number, only, read_json
 from pin_metaik.optimize.space import Array
@@ -57,7 +57,7 @@ class SynchroDrive:
 
     def omega_at(self, v: ArrayLike) -> Array:
         """Largest turning rate (...), rad/s, at speeds v (...), m/s: the same at all."""
-        return np.full(np.shape(v), float(self.omega_max))
+        return np.full(array("v", v, "...").shape, float(self.omega_max))
 
 
 @checked
@@ -115,7 +115,7 @@ class DifferentialDrive:
 
     def omega_at(self, v: ArrayLike) -> Array:
         """Largest turning rate (...), rad/s, at speeds v (...), m/s: what the outer wheel has left."""
-        return 2 * np.maximum(self.wheel_speed - np.abs(v), STILL) / self.track
+        return np.asarray(2 * np.maximum(self.wheel_speed - np.abs(array("v", v, "...")), STILL) / self.track)
 
     def wheels(self, v: ArrayLike, omega: ArrayLike) -> Array:
         """Speeds (..., 2) of the left and the right wheel over the ground, m/s; of accelerations, accelerations.
@@ -124,8 +124,9 @@ class DifferentialDrive:
             v: Speed (...), m/s.
             omega: Turning rate (...), rad/s.
         """
-        across = np.asarray(omega) * self.track / 2
-        return np.stack(np.broadcast_arrays(v - across, v + across), axis=-1)
+        ahead = array("v", v, "...")
+        across = array("omega", omega, *ahead.shape) * self.track / 2
+        return np.stack((ahead - across, ahead + across), axis=-1)
 
 
 Vehicle = SynchroDrive | DifferentialDrive
