@@ -217,6 +217,10 @@ def motion() -> mobile.TrajectoryPlan:
     return mobile.plan_trajectory(path(), mobile.NOMAD_200, scene().obstacles)
 
 
+def curve() -> mobile.Curve:
+    return mobile.shortest_curve((0.0, 0.0, 0.0), (2.0, 1.0, 1.0), 0.5)
+
+
 @cache
 def turn() -> mobile.LearnedTurn:
     return mobile.learn_turn(mobile.NOMAD_200, hidden=(2,), iterations=3)
@@ -330,6 +334,10 @@ OWNERS: dict[str, Callable[[], Any]] = {
     "stewart.Servos": lambda: servos().geometry.servos,
     "stewart.Trajectory": way,
     "stewart.Workspace": workspace,
+    "mobile.Curve": curve,
+    "mobile.DifferentialDrive": lambda: mobile.TURTLEBOT3_BURGER,
+    "mobile.Footprint": lambda: mobile.Footprint.rectangle(0.5, 0.3),
+    "mobile.SynchroDrive": lambda: mobile.NOMAD_200,
     "mobile.ExactFitness": mobile.ExactFitness,
     "mobile.PaperFitness": mobile.PaperFitness,
     "mobile.FreeSpace": lambda: planning().space,
@@ -949,7 +957,10 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "vehicle": mobile.NOMAD_200,
         "obstacles": scene().obstacles,
         "radius": 0.1,
+        "ends": (0.0, 0.0),
     },
+    "mobile.Route.tangents": lambda: {"V": np.zeros((1, len(route().turns)))},
+    "mobile.Route.turning": lambda: {"V": np.zeros((1, len(route().turns)))},
     "mobile.Route.straights": lambda: {"V": np.zeros((1, len(route().turns))), "tangents": None},
     "mobile.Route.times": lambda: {"V": np.zeros((1, len(route().turns))), "tangents": None},
     "mobile.Route.lack": lambda: {"V": np.zeros((1, len(route().turns))), "tangents": None},
@@ -963,6 +974,66 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     },
     "mobile.Scene.between": lambda: {"start": (0.0, 1.0), "goal": (4.0, 4.0)},
     "mobile.Scene.as_dict": dict,
+    "mobile.Curve": lambda: {"start": (0.0, 0.0, 0.0), "radius": 0.5, "word": "LS", "lengths": (1.0, -1.0)},
+    "mobile.Curve.poses": lambda: {"s": [0.1, 0.2]},
+    "mobile.Curve.moved": lambda: {"a": np.array([0.1]), "b": np.array([0.2])},
+    "mobile.Curve.places": lambda: {"step": 0.1},
+    "mobile.Curve.write": lambda: {"file": "curve.csv", "step": 0.1},
+    "mobile.DifferentialDrive": lambda: {
+        "name": "r",
+        "track": 0.3,
+        "wheel_speed": 1.0,
+        "wheel_acceleration": 1.0,
+        "radius": 0.2,
+    },
+    "mobile.DifferentialDrive.omega_at": lambda: {"v": [0.0, 0.1]},
+    "mobile.DifferentialDrive.wheels": lambda: {"v": [0.0, 0.1], "omega": [0.2, 0.3]},
+    "mobile.Footprint": lambda: {"corners": [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], "around": 0.1},
+    "mobile.Footprint.at": lambda: {"poses": [[0.0, 0.0, 0.0]]},
+    "mobile.Footprint.disc": lambda: {"radius": 0.1},
+    "mobile.Footprint.rectangle": lambda: {"length": 0.5, "width": 0.3, "behind": 0.1},
+    "mobile.State": lambda: {"x": 0.0, "y": 0.0, "heading": 0.0, "v": 0.1, "omega": 0.1},
+    "mobile.SynchroDrive.omega_at": lambda: {"v": [0.0, 0.1]},
+    "mobile.curve_through": lambda: {
+        "path": path(),
+        "turning_radius": 0.2,
+        "obstacles": [],
+        "footprint": mobile.Footprint.disc(0.1),
+        "start_heading": 0.1,
+        "goal_heading": 0.2,
+        "reverse": True,
+    },
+    "mobile.first_contact": lambda: {
+        "motion": curve(),
+        "footprint": mobile.Footprint.disc(0.1),
+        "obstacles": scene().obstacles,
+        "tolerance": 1e-4,
+    },
+    "mobile.nav_path": lambda: {"of": path(), "frame": "map", "stamp": 1.5, "every": 0.2},
+    "mobile.write_nav_path": lambda: {"file": "path.json", "of": path(), "frame": "map", "stamp": 1.5, "every": 0.2},
+    "mobile.plan_in_motion": lambda: {
+        "path": path(),
+        "vehicle": mobile.NOMAD_200,
+        "obstacles": scene().obstacles,
+        "start": mobile.State(0.0, 0.0, 0.5, 0.2),
+        "goal": mobile.State(5.0, 4.0, 0.5),
+        "radius": 0.1,
+    },
+    "mobile.replan": lambda: {
+        "scene": scene(),
+        "vehicle": mobile.NOMAD_200,
+        "start": mobile.State(0.0, 0.0, 0.5, 0.2),
+        "goal": mobile.State(5.0, 4.0, 0.5),
+        "margin": 0.1,
+        "paths": 1,
+        "join": "mitre",
+    },
+    "mobile.shortest_curve": lambda: {
+        "start": (0.0, 0.0, 0.0),
+        "goal": (1.0, 1.0, 1.0),
+        "turning_radius": 0.5,
+        "reverse": True,
+    },
     "mobile.SynchroDrive": lambda: {
         "name": "r",
         "v_max": 1.0,
@@ -971,7 +1042,10 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "alpha_max": 1.0,
         "radius": 0.2,
     },
-    "mobile.Trajectory": lambda: {"phases": [Phase(1.0, 0.5)], "start": (0.0, 0.0, 0.0)},
+    "mobile.Trajectory": lambda: {"phases": [Phase(1.0, 0.5)], "start": (0.0, 0.0, 0.0), "v": 0.1},
+    "mobile.Trajectory.state": lambda: {"t": 0.1},
+    "mobile.Trajectory.poses": lambda: {"s": [0.1, 0.2]},
+    "mobile.Trajectory.moved": lambda: {"a": np.array([0.1]), "b": np.array([0.2])},
     "mobile.Trajectory.at": lambda: {"t": [0.1, 0.2]},
     "mobile.Trajectory.sample": lambda: {"dt": 0.5},
     "mobile.Trajectory.write_csv": lambda: {"file": "trajectory.csv", "dt": 0.5},

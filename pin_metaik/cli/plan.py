@@ -22,7 +22,7 @@ from pin_metaik.optimize import ALGORITHMS, AskTell, Budget
 from pin_metaik.output import writable
 
 if TYPE_CHECKING:  # shapely is an extra, and none of the other commands should wait for it
-    from pin_metaik.mobile import PathPlan, Scene, SynchroDrive, TrajectoryPlan
+    from pin_metaik.mobile import PathPlan, Scene, TrajectoryPlan, Vehicle
 
 UNITS = {"length": "that of the scene, m with a trajectory", "angle": "rad", "time": "s"}
 MARGIN = 0.1  # m, when a trajectory is wanted: curves need room inside the corners
@@ -65,7 +65,11 @@ def plan(
     ] = None,
     resolution: Annotated[float | None, typer.Option(help="Of a .npy: width of a cell, m; default: 1.")] = None,
     vehicle: Annotated[
-        str, typer.Option(help="Whose limits the trajectory keeps: nomad200, nomad200_driver, or a .json with others.")
+        str,
+        typer.Option(
+            help="Whose limits the trajectory keeps: nomad200, nomad200_driver, turtlebot3_burger, turtlebot3_waffle, "
+            "or a .json with others."
+        ),
     ] = "nomad200",
     paths: Annotated[
         int, typer.Option(min=1, help="Homotopy classes to try; with a trajectory the quickest of them counts.")
@@ -75,6 +79,10 @@ def plan(
     seeded: Annotated[bool, typer.Option("--seeded", help="Start one individual at the shortest path.")] = False,
     rng: Annotated[int, typer.Option(min=0, help="Seed of every random choice.")] = 0,
     out: Annotated[Path | None, typer.Option(help="Folder for scene, path and trajectory: JSON, CSV, PNG.")] = None,
+    ros: Annotated[
+        Path | None,
+        typer.Option(help="A .yaml or .json for the path as a nav_msgs/Path; with a trajectory its poses and times."),
+    ] = None,
     figures: Annotated[bool, typer.Option(help="Draw figures into --out; needs the extra plots.")] = True,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
@@ -83,11 +91,14 @@ def plan(
     Exit code 0: planned, 1: what was found collides, 2: the call makes no sense, 130: interrupted.
     """
     from pin_metaik import mobile
+    from pin_metaik.mobile.ros import ros_file
 
     if out is not None:
         writable(out, folder=True)
         if figures:
             need_figures()
+    if ros is not None:
+        ros_file(ros)
     if trajectory is not None and trajectory not in TRAJECTORIES:
         raise InvalidSetting(f"no trajectory {trajectory!r}; known: {', '.join(TRAJECTORIES)}")
     if paths > 1 and method != "exact":
@@ -135,6 +146,9 @@ def plan(
     if out is not None:
         for file in _write(out, plans, best, found, motion, figures):
             Console(stderr=as_json).print(str(file), markup=False, highlight=False, soft_wrap=True)
+    if ros is not None:
+        mobile.write_nav_path(ros, plans[best].path if motion is None else motion.trajectory)
+        Console(stderr=as_json).print(str(ros), markup=False, highlight=False, soft_wrap=True)
     if path.interrupted or any(each.interrupted for each in motions):
         raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if path.success and (motion is None or motion.success) else 1)
@@ -163,13 +177,11 @@ def _scene(source: str, start: Place, goal: Place, clearance: float, cells: dict
     return mobile.random_scene(int(count or 15), int(seed), gap=gap, start=start, goal=goal)
 
 
-def _motions(
-    plans: list[PathPlan], robot: SynchroDrive, radius: float, method: str, rng: int
-) -> Iterator[TrajectoryPlan]:
+def _motions(plans: list[PathPlan], robot: Vehicle, radius: float, method: str, rng: int) -> Iterator[TrajectoryPlan]:
     from pin_metaik import mobile
     from pin_metaik.learn import OutsideTraining
 
-    model = mobile.learn_turn(robot) if method == "ann" else None
+    model = mobile.learn_turn(robot) if method == "ann" and isinstance(robot, mobile.SynchroDrive) else None
     for plan in plans:
         with progress_bar("trajectory") as watch, warnings.catch_warnings():
             warnings.simplefilter("ignore", OutsideTraining)  # the plan's notes say it

@@ -14,14 +14,29 @@ from pin_metaik.lookup import need
 need("planning for mobile robots", "mobile", "shapely")
 
 from pin_metaik.mobile.body import configurations, mobile_robot, velocities
-from pin_metaik.mobile.errors import Blocked, LooksLikeDegrees, NoPath
+from pin_metaik.mobile.curves.curve import Curve
+from pin_metaik.mobile.curves.footprint import Contact, Footprint, first_contact
+from pin_metaik.mobile.curves.shortest import shortest_curve
+from pin_metaik.mobile.curves.through import curve_through
+from pin_metaik.mobile.errors import Blocked, LooksLikeDegrees, NoPath, NoRoom, Obstructed
 from pin_metaik.mobile.motion.fastest import fastest_trajectory
 from pin_metaik.mobile.motion.learned import LearnedTurn, learn_turn
+from pin_metaik.mobile.motion.replanning import plan_in_motion, replan
 from pin_metaik.mobile.motion.result import TrajectoryPlan
 from pin_metaik.mobile.motion.route import Route
 from pin_metaik.mobile.motion.timing import plan_trajectory
-from pin_metaik.mobile.motion.trajectory import Samples, Trajectory
-from pin_metaik.mobile.motion.vehicle import NOMAD_200, NOMAD_200_DRIVER, VEHICLES, SynchroDrive, load_vehicle
+from pin_metaik.mobile.motion.trajectory import Samples, State, Trajectory
+from pin_metaik.mobile.motion.vehicle import (
+    NOMAD_200,
+    NOMAD_200_DRIVER,
+    TURTLEBOT3_BURGER,
+    TURTLEBOT3_WAFFLE,
+    VEHICLES,
+    DifferentialDrive,
+    SynchroDrive,
+    Vehicle,
+    load_vehicle,
+)
 from pin_metaik.mobile.paths.exact import shortest_path
 from pin_metaik.mobile.paths.fitness import FITNESSES, ExactFitness, Fitness, PaperFitness
 from pin_metaik.mobile.paths.homotopy import shortest_paths
@@ -30,6 +45,7 @@ from pin_metaik.mobile.paths.planning import plan_alternatives, plan_path
 from pin_metaik.mobile.paths.problem import PathProblem
 from pin_metaik.mobile.paths.result import PathPlan, PathStatus
 from pin_metaik.mobile.paths.visibility import Visibility
+from pin_metaik.mobile.ros import nav_path, write_nav_path
 from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.grids import OccupancyGrid, grid_of, read_grid
 from pin_metaik.mobile.world.polygons import read_obstacles, read_polygons
@@ -40,14 +56,22 @@ __all__ = [
     "FITNESSES",
     "NOMAD_200",
     "NOMAD_200_DRIVER",
+    "TURTLEBOT3_BURGER",
+    "TURTLEBOT3_WAFFLE",
     "VEHICLES",
     "Blocked",
+    "Contact",
+    "Curve",
+    "DifferentialDrive",
     "ExactFitness",
     "Fitness",
+    "Footprint",
     "FreeSpace",
     "LearnedTurn",
     "LooksLikeDegrees",
     "NoPath",
+    "NoRoom",
+    "Obstructed",
     "OccupancyGrid",
     "PaperFitness",
     "Path",
@@ -57,26 +81,35 @@ __all__ = [
     "Route",
     "Samples",
     "Scene",
+    "State",
     "SynchroDrive",
     "Trajectory",
     "TrajectoryPlan",
+    "Vehicle",
     "Visibility",
     "configurations",
+    "curve_through",
     "fastest_trajectory",
+    "first_contact",
     "grid_of",
     "learn_turn",
     "load_scene",
     "load_vehicle",
     "mobile_robot",
+    "nav_path",
     "plan_alternatives",
+    "plan_in_motion",
     "plan_path",
     "plan_trajectory",
     "random_scene",
     "read_grid",
     "read_obstacles",
     "read_polygons",
+    "replan",
     "scene_names",
+    "shortest_curve",
     "shortest_path",
     "shortest_paths",
     "velocities",
+    "write_nav_path",
 ]

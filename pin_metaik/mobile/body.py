@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
 from pin_metaik.mobile.motion.trajectory import Samples
-from pin_metaik.mobile.motion.vehicle import SynchroDrive
+from pin_metaik.mobile.motion.vehicle import Vehicle
 from pin_metaik.robots import Description, Robot
 
 HEIGHT = 0.8  # m, the Nomad 200's; where it matters to somebody it is an argument
@@ -38,7 +38,7 @@ URDF = """<?xml version="1.0"?>
 
 
 @checked
-def mobile_robot(vehicle: SynchroDrive, height: float = HEIGHT) -> Robot:
+def mobile_robot(vehicle: Vehicle, height: float = HEIGHT) -> Robot:
     """The robot as Pinocchio knows it; its frame ``base`` is on the floor below its centre, x is ahead.
 
     Its configuration is (x, y, cos heading, sin heading), its velocity (forwards, sideways, turning) in its own frame.

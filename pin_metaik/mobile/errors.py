@@ -15,7 +15,7 @@ class Blocked(MetaIKError):
     """A start or goal inside an obstacle, or outside the workspace.
 
     Attributes:
-        role: ``"start"`` or ``"goal"``.
+        role: ``"start"`` or ``"goal"``; ``"curve"`` of ``Obstructed``.
         point: Where it is (x, y).
         clearance: Distance it should keep from obstacles and walls.
         nearest: The nearest place (x, y) that would have worked; None if there is none at all.
@@ -31,6 +31,26 @@ class Blocked(MetaIKError):
             where = f"keeps the clearance of {clearance:g}, but {_grown(join)} cover it"
         hint = f"the nearest free place is {_shown(nearest)}" if nearest else "no place is free"
         super().__init__(f"the {role} {_shown(point)} {where}; {hint}")
+
+
+class Obstructed(Blocked):
+    """Every curve that was tried meets an obstacle.
+
+    Attributes:
+        pose: Where the best of them meets one first (x, y, heading), m and rad.
+        point: The obstacle's point there (x, y).
+    """
+
+    def __init__(self, pose: tuple[float, float, float], point: Point) -> None:
+        self.role, self.clearance, self.nearest, self.join = "curve", 0.0, None, None
+        self.pose, self.point = pose, point
+        x, y, heading = pose
+        MetaIKError.__init__(
+            self,
+            f"every curve that was tried meets an obstacle; the best with the vehicle at {_shown((x, y))}, heading "
+            f"{heading:.3f} rad, at {_shown(point)}. Points farther from the obstacles may help, a smaller turning "
+            "radius, or reverse=True",
+        )
 
 
 class NoPath(MetaIKError):
@@ -56,6 +76,24 @@ class NoPath(MetaIKError):
             why = f"{_grown(join)} close every way with a clearance of {clearance:g}, and {nearly:.6g} leaves one"
             hint = "; try join='round'" if join == "mitre" else hint
         super().__init__(f"{where}: {why}{hint}")
+
+
+class NoRoom(MetaIKError):
+    """A robot in motion for which nothing that was tried keeps clear of the obstacles.
+
+    Attributes:
+        place: Where it is (x, y).
+        v: Its speed, m/s.
+        stop: Where it stands if it brakes straight ahead at once (x, y).
+        radius: Distance to keep from obstacles, m.
+    """
+
+    def __init__(self, place: Point, v: float, stop: Point, radius: float) -> None:
+        self.place, self.v, self.stop, self.radius = place, v, stop, radius
+        super().__init__(
+            f"from {_shown(place)} at {v:g} m/s nothing that was tried keeps {radius:g} m from the obstacles; braking "
+            f"ends at {_shown(stop)}. A lower speed may, or more paths, or another margin"
+        )
 
 
 def _shown(point: Point) -> str:

@@ -116,7 +116,8 @@ def draw_trajectory(figure: Any, plan: TrajectoryPlan, scene: Scene) -> None:
         world.add_patch(_disc(samples.xy[k], plan.radius))
     world.set(xlabel="x, m", ylabel="y, m")
     verdict = "" if plan.success else ", collides" if not plan.collision_free else ", misses the goal"
-    said = f"{plan.method}: driven in {plan.time:.2f} s, with stops at all corners {plan.stop_and_turn:.2f} s{verdict}"
+    stops = f", with stops at all corners {plan.stop_and_turn:.2f} s" if np.isfinite(plan.stop_and_turn) else ""
+    said = f"{plan.method}: driven in {plan.time:.2f} s{stops}{verdict}"
     world.set_title(said, fontsize="medium", color="black" if plan.success else RED)
 
     vehicle = plan.route.vehicle
@@ -125,8 +126,9 @@ def draw_trajectory(figure: Any, plan: TrajectoryPlan, scene: Scene) -> None:
     speed.axhline(vehicle.v_max, color=GREY, linewidth=0.8, linestyle=":", label="limit")
     speed.set_ylabel("speed, m/s")
     turning.plot(samples.t, np.degrees(samples.omega), color=RED)
-    for limit, name in ((-vehicle.omega_max, None), (vehicle.omega_max, "limits")):
-        turning.axhline(np.degrees(limit), color=GREY, linewidth=0.8, linestyle=":", label=name)
+    for side, name in ((-1, None), (1, "limits")):
+        limit = side * np.degrees(vehicle.omega_at(samples.v))
+        turning.plot(samples.t, limit, color=GREY, linewidth=0.8, linestyle=":", label=name)
     turning.set_ylabel("turning, deg/s")
     if plan.obstacles:
         clear.plot(

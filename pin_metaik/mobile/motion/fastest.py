@@ -9,7 +9,7 @@ from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.errors import Blocked, NoPath
 from pin_metaik.mobile.motion.result import TrajectoryPlan
 from pin_metaik.mobile.motion.timing import plan_trajectory
-from pin_metaik.mobile.motion.vehicle import NOMAD_200, SynchroDrive
+from pin_metaik.mobile.motion.vehicle import NOMAD_200, Vehicle
 from pin_metaik.mobile.paths.problem import PathProblem
 from pin_metaik.mobile.world.growth import Join
 from pin_metaik.mobile.world.scene import Scene
@@ -20,7 +20,7 @@ MARGINS = (0.05, 0.1, 0.2, 0.3)  # m
 @checked
 def fastest_trajectory(
     scene: Scene,
-    vehicle: SynchroDrive = NOMAD_200,
+    vehicle: Vehicle = NOMAD_200,
     *,
     paths: int = 3,
     margins: Iterable[float] = MARGINS,

@@ -42,6 +42,8 @@ class TrajectoryPlan:
         seed: Of every random choice; None if a generator was handed in.
         interrupted: Whether the search was stopped.
         learned: What the network's errors do, if one was used.
+        goal: Where it is to end (x, y), m.
+        joining: Time, s, of what leads from a state in motion onto the route, and off it to the state at the goal.
     """
 
     trajectory: Trajectory
@@ -55,6 +57,8 @@ class TrajectoryPlan:
     seed: int | None
     interrupted: bool
     learned: TurnReport | None
+    goal: tuple[float, float]
+    joining: float = 0.0
 
     @property
     def time(self) -> float:
@@ -63,14 +67,14 @@ class TrajectoryPlan:
 
     @property
     def stop_and_turn(self) -> float:
-        """Duration, s, of the trajectory that stops at every corner: the fall-back that is always feasible."""
-        return self.route.stop_and_turn
+        """Duration, s, with a stop at every corner: always feasible from rest to rest; inf where a speed forbids it."""
+        return self.joining + self.route.stop_and_turn
 
     @property
     def end_error(self) -> float:
         """Distance, m, of the trajectory's end from the goal."""
         x, y, _ = self.trajectory.end
-        return float(np.hypot(*(np.array([x, y]) - self.route.path.points[-1])))
+        return float(np.hypot(x - self.goal[0], y - self.goal[1]))
 
     @cached_property
     def clearance(self) -> float:
@@ -137,7 +141,7 @@ class TrajectoryPlan:
             "success": self.success,
             "collision_free": self.collision_free,
             "time": self.time,
-            "stop_and_turn": self.stop_and_turn,
+            "stop_and_turn": self.stop_and_turn if np.isfinite(self.stop_and_turn) else None,
             "path": self.route.path.points.tolist(),
             "turns": self.route.turns.tolist(),
             "speeds": self.v.tolist(),
@@ -152,7 +156,6 @@ class TrajectoryPlan:
         }
 
     def __str__(self) -> str:
-        return (
-            f"{self.time:.3f} s ({self.method}); {self.stop_and_turn:.3f} s with a stop at every corner; speeds in the "
-            f"corners: {', '.join(f'{v:.3f}' for v in self.v) or 'none'} m/s"
-        )
+        stops = f"; {self.stop_and_turn:.3f} s with a stop at every corner" if np.isfinite(self.stop_and_turn) else ""
+        speeds = ", ".join(f"{v:.3f}" for v in self.v) or "none"
+        return f"{self.time:.3f} s ({self.method}){stops}; speeds in the corners: {speeds} m/s"

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -14,38 +13,46 @@ from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry, InvalidSetting
 from pin_metaik.mobile.motion.straight import straight_time
 from pin_metaik.mobile.motion.turn import lead_time, turn_shape, turn_time
-from pin_metaik.mobile.motion.vehicle import SynchroDrive
+from pin_metaik.mobile.motion.vehicle import Vehicle
 from pin_metaik.mobile.paths.path import Path
+from pin_metaik.optimize.settings import within
 
 FLAT = 1e-9  # m; corners nearer to a straight line are none
 TINY = 1e-12  # s; no tangent length per speed is shorter, so that it can be divided by
 SLOW = 1e-3  # of the largest speed; a corner that allows no more is for stopping
 SKIN = 1e-6  # m; how deep a point robot may touch an obstacle
 HALVINGS = 34  # of the interval in which the largest free speed lies
+MANTISSA = 53  # halvings that leave no interval
 
 
 @dataclass(frozen=True, eq=False)
 class Route:
-    """Straights s_0 ... s_n with turns theta_1 ... theta_n between them; at rest at both ends.
+    """Straights s_0 ... s_n with turns theta_1 ... theta_n between them.
 
     Attributes:
         path: The polyline, without corners that are none.
         vehicle: The robot.
         turns: Angle at each corner (n,) in rad, to the left above zero.
-        g: Tangent length per speed at each corner (n,), in s.
+        g: Tangent length per speed at each corner (n,), in s; of a differential drive that of slow turns.
         caps: Largest speed at each corner (n,) in m/s; 0 where there is no room but to stop and turn.
+        ends: Speeds at the start and at the goal, m/s.
     """
 
     path: Path
-    vehicle: SynchroDrive
+    vehicle: Vehicle
     turns: Array
     g: Array
     caps: Array
+    ends: tuple[float, float] = (0.0, 0.0)
 
     @staticmethod
     @checked
     def along(
-        path: Path, vehicle: SynchroDrive, obstacles: Sequence[shapely.Geometry] = (), radius: float | None = None
+        path: Path,
+        vehicle: Vehicle,
+        obstacles: Sequence[shapely.Geometry] = (),
+        radius: float | None = None,
+        ends: tuple[float, float] = (0.0, 0.0),
     ) -> Route:
         """The route along a path.
 
@@ -57,10 +64,14 @@ class Route:
             vehicle: The robot.
             obstacles: Polygons, lines and points, not grown.
             radius: Distance of the robot's centre from obstacles, in m; default: the robot's radius.
+            ends: Speeds at the start and at the goal, m/s, along the path.
 
         Raises:
+            InvalidSetting: Speeds at the ends that the robot does not drive.
             InvalidGeometry: The path turns back on itself.
         """
+        for role, speed in zip(("start", "goal"), ends, strict=True):
+            within(f"the speed at the {role}", speed, 0, vehicle.v_max * (1 + FLAT))
         path = path.straightened(FLAT)
         along = np.diff(path.points, axis=0)
         into, out = along[:-1], along[1:]
@@ -73,44 +84,51 @@ class Route:
         g = lead_time(np.abs(turns), vehicle)
         s = path.lengths
         caps = np.minimum(vehicle.v_max, np.minimum(s[:-1], s[1:]) / np.maximum(g, TINY))
-        route = Route(path, vehicle, turns, g, caps)
+        route = Route(path, vehicle, turns, g, caps, ends)
+        if vehicle.coupled:
+            route = replace(route, caps=route._with_room(np.minimum(s[:-1], s[1:])))
         clear = [route.clear_speed(i, obstacles, vehicle.radius if radius is None else radius) for i in range(len(g))]
-        return Route(path, vehicle, turns, g, np.array(clear))
+        return replace(route, caps=np.array(clear))
 
     @property
     def lengths(self) -> Array:
         """Length of each segment (n + 1,) in m."""
         return self.path.lengths
 
-    @cached_property
-    def turning(self) -> float:
-        """Time of all turns in s, whatever the speeds."""
-        return float(turn_time(self.turns, self.vehicle).sum())
-
     @property
     def stop_and_turn(self) -> float:
-        """Time in s with a stop at every corner: always feasible."""
+        """Time in s with a stop at every corner: always feasible from rest to rest; inf if a speed at an end is not."""
         return float(self.times(np.zeros((1, len(self.turns))))[0])
 
-    def straights(self, V: Array, tangents: Array | None = None) -> Array:
-        """Lengths (k, n + 1) left for the straights at speeds V (k, n); tangent lengths (k, n) default to ``v g``."""
+    @checked
+    def tangents(self, V: Array) -> Array:
+        """Tangent lengths (k, n), m, at speeds V (k, n): so long before a corner its turn begins."""
         V = self._speeds(V)
-        alpha = np.pad(
-            V * self.g if tangents is None else array("tangents", tangents, *V.shape, finite=False), ((0, 0), (1, 1))
-        )
+        return V * (lead_time(np.abs(self.turns), self.vehicle, V) if self.vehicle.coupled else self.g)
+
+    @checked
+    def turning(self, V: Array) -> Array:
+        """Times (k, n), s, of the turns at speeds V (k, n)."""
+        return turn_time(self.turns, self.vehicle, self._speeds(V))
+
+    def straights(self, V: Array, tangents: Array | None = None) -> Array:
+        """Lengths (k, n + 1) left for the straights at speeds V (k, n); tangent lengths (k, n) default to the true."""
+        V = self._speeds(V)
+        alpha = self.tangents(V) if tangents is None else array("tangents", tangents, *V.shape, finite=False)
+        alpha = np.pad(alpha, ((0, 0), (1, 1)))
         return np.asarray(self.lengths - alpha[:, :-1] - alpha[:, 1:])
 
     def times(self, V: Array, tangents: Array | None = None) -> Array:
         """Times (k,) in s at speeds V (k, n); inf where a straight is too short."""
         V = self._speeds(V)
-        v = np.pad(V, ((0, 0), (1, 1)))
+        v = self._with_ends(V)
         straights = straight_time(self.straights(V, tangents), v[:, :-1], v[:, 1:], self.vehicle)
-        return np.asarray(straights.sum(axis=1) + self.turning)
+        return np.asarray(straights.sum(axis=1) + self.turning(V).sum(axis=1))
 
     def lack(self, V: Array, tangents: Array | None = None) -> Array:
         """By how much (k,) in m straights are too short at speeds V (k, n), in sum; 0 is feasible."""
         V = self._speeds(V)
-        v = np.pad(V, ((0, 0), (1, 1)))
+        v = self._with_ends(V)
         needed = np.abs(v[:, 1:] ** 2 - v[:, :-1] ** 2) / (2 * self.vehicle.a_max)
         return np.asarray(np.maximum(needed - self.straights(V, tangents), 0).sum(axis=1))
 
@@ -118,23 +136,22 @@ class Route:
     def clear_speed(self, corner: int, obstacles: Sequence[shapely.Geometry], radius: float) -> float:
         """The largest speed up to the cap at which the curve, and all between it and the corner, keeps the radius.
 
-        The curves of a corner are copies of each other in different sizes, so what is free at one speed is free at all
-        below it, and halving the interval finds the largest.
+        The faster the robot, the larger the curve's radius where it has a given direction, whether its curves are
+        copies of each other in different sizes or have longer arcs. So each lies between the corner and all faster
+        ones, what is free at one speed is free at all below it, and halving the interval finds the largest.
         """
         if not 0 <= corner < len(self.caps):
             raise InvalidSetting(f"corner is 0 to {len(self.caps) - 1}, got {corner}")
         cap = float(self.caps[corner])
-        shape = self._curve(corner)
-        at = self.path.corners[corner]
         tree = shapely.STRtree(obstacles)
-        near = tree.query(shapely.Polygon(at + cap * shape), predicate="dwithin", distance=radius)
+        near = tree.query(self._cut(corner, cap), predicate="dwithin", distance=radius)
         if not len(near):
             return cap
         solid = shapely.union_all([obstacles[i] for i in near])
         free, tight = 0.0, cap
         for _ in range(HALVINGS):
             v = (free + tight) / 2
-            if keeps_clear([shapely.Polygon(at + v * shape)], solid, radius):
+            if keeps_clear([self._cut(corner, v)], solid, radius):
                 free = v
             else:
                 tight = v
@@ -144,14 +161,28 @@ class Route:
         """Speeds (k, n) that somebody gave."""
         return array("V", V, "k", len(self.turns), finite=False)
 
-    def _curve(self, corner: int) -> Array:
-        """The curve at speed 1 with the corner as its first point, both relative to the corner (m + 1, 2)."""
+    def _with_ends(self, V: Array) -> Array:
+        """Speeds (k, n + 2) with those at the start and at the goal."""
+        start, goal = self.ends
+        return np.pad(V, ((0, 0), (1, 1)), constant_values=((0, 0), (start, goal)))
+
+    def _with_room(self, room: Array) -> Array:
+        """The largest speeds (n,) up to the caps whose tangent lengths are at most a room (n,), in m."""
+        free, tight = np.zeros_like(self.caps), self.caps.copy()
+        for _ in range(MANTISSA):
+            v = (free + tight) / 2
+            fits = self.tangents(v[None])[0] <= room
+            free, tight = np.where(fits, v, free), np.where(fits, tight, v)
+        return free
+
+    def _cut(self, corner: int, v: float) -> shapely.Polygon:
+        """What lies between a corner and its curve at speed v."""
         turn = float(self.turns[corner])
-        x, y = turn_shape(abs(turn), self.vehicle).T
-        along = self.path.points[corner + 1] - self.path.points[corner]
+        x, y = v * turn_shape(abs(turn), self.vehicle, v).T
+        at, along = self.path.corners[corner], self.path.points[corner + 1] - self.path.points[corner]
         cos, sin = along / np.hypot(*along)
         y = np.copysign(1.0, turn) * y
-        return np.vstack(([0.0, 0.0], np.column_stack((cos * x - sin * y, sin * x + cos * y))))
+        return shapely.Polygon(np.vstack((at, at + np.column_stack((cos * x - sin * y, sin * x + cos * y)))))
 
 
 def keeps_clear(places: Sequence[shapely.Geometry], solid: shapely.Geometry, radius: float, slack: float = 0.0) -> bool:

@@ -20,14 +20,25 @@ def straight(length: float, v0: float, v1: float, a: float, v_max: float) -> flo
     return (2 * v_p - v0 - v1) / a + max(length - (2 * v_p * v_p - v0 * v0 - v1 * v1) / (2 * a), 0.0) / v_p
 
 
-@jit("f8(f8[::1], f8[::1], f8[:,::1], f8, f8, f8[::1])")
-def best_speeds(lengths: Floats, g: Floats, grid: Floats, a: float, v_max: float, speeds: Floats) -> float:
-    """Least time of the straights of a route over speeds from a grid, by dynamic programming.
+@jit("f8(f8[::1], f8[::1], f8[:,::1], f8[:,::1], f8[:,::1], f8, f8, f8[::1])")
+def best_speeds(
+    lengths: Floats,
+    ends: Floats,
+    grid: Floats,
+    tangents: Floats,
+    turning: Floats,
+    a: float,
+    v_max: float,
+    speeds: Floats,
+) -> float:
+    """Least time along a route over speeds from a grid, by dynamic programming.
 
     Args:
         lengths: Of the polyline's segments (n + 1,), in m.
-        g: Tangent length per speed at each corner (n,), in s.
+        ends: Speeds (2,) at the start and at the goal, in m/s.
         grid: Speeds (n, m) to choose from at each corner, in m/s.
+        tangents: Their tangent lengths (n, m), in m.
+        turning: Times (n, m) of their turns, in s.
         a: Largest acceleration, m/s^2.
         v_max: Largest speed, m/s.
         speeds: The chosen ones (n,), filled in.
@@ -40,24 +51,24 @@ def best_speeds(lengths: Floats, g: Floats, grid: Floats, a: float, v_max: float
     came = np.zeros((n, m), dtype=np.int64)
     for j in range(m):
         v = grid[0, j]
-        time[0, j] = straight(lengths[0] - g[0] * v, 0.0, v, a, v_max)
+        time[0, j] = straight(lengths[0] - tangents[0, j], ends[0], v, a, v_max) + turning[0, j]
     for i in range(1, n):
         for j in range(m):
             v = grid[i, j]
-            left = lengths[i] - g[i] * v
+            left = lengths[i] - tangents[i, j]
             best, where = np.inf, 0
             for k in range(m):
                 if time[i - 1, k] >= best:
                     continue
                 u = grid[i - 1, k]
-                t = time[i - 1, k] + straight(left - g[i - 1] * u, u, v, a, v_max)
+                t = time[i - 1, k] + straight(left - tangents[i - 1, k], u, v, a, v_max)
                 if t < best:
                     best, where = t, k
-            time[i, j], came[i, j] = best, where
+            time[i, j], came[i, j] = best + turning[i, j], where
     best, where = np.inf, 0
     for j in range(m):
         v = grid[n - 1, j]
-        t = time[n - 1, j] + straight(lengths[n] - g[n - 1] * v, v, 0.0, a, v_max)
+        t = time[n - 1, j] + straight(lengths[n] - tangents[n - 1, j], v, ends[1], a, v_max)
         if t < best:
             best, where = t, j
     for i in range(n - 1, -1, -1):

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pin_metaik.arrays import Array
-from pin_metaik.mobile.motion.vehicle import SynchroDrive
+from pin_metaik.mobile.motion.vehicle import Vehicle
 
 ROUNDING = 1e-12  # m; as much too short counts as long enough
 
 
-def straight_time(length: ArrayLike, v0: ArrayLike, v1: ArrayLike, vehicle: SynchroDrive) -> Array:
+def straight_time(length: ArrayLike, v0: ArrayLike, v1: ArrayLike, vehicle: Vehicle) -> Array:
     """Least time in s for straights (...) in m from speed v0 to v1 (...) in m/s; inf where they are too short."""
     s, v0, v1 = (np.asarray(v, dtype=float) for v in (length, v0, v1))
     a = vehicle.a_max
@@ -23,7 +23,7 @@ def straight_time(length: ArrayLike, v0: ArrayLike, v1: ArrayLike, vehicle: Sync
     return np.where(s >= np.abs(v1**2 - v0**2) / (2 * a) - ROUNDING, T, np.inf)
 
 
-def straight_phases(length: float, v0: float, v1: float, vehicle: SynchroDrive) -> list[tuple[float, float]]:
+def straight_phases(length: float, v0: float, v1: float, vehicle: Vehicle) -> list[tuple[float, float]]:
     """Durations (s) and accelerations (m/s^2) of the quickest way from speed v0 to v1 on a straight long enough."""
     a = vehicle.a_max
     vp = min(vehicle.v_max, math.sqrt((v0**2 + v1**2) / 2 + a * max(length, 0.0)))

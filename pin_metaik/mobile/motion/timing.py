@@ -19,7 +19,7 @@ from pin_metaik.mobile.motion.speeds import Speeds, optimal_speeds, searched_spe
 from pin_metaik.mobile.motion.straight import straight_phases
 from pin_metaik.mobile.motion.trajectory import Phase, Trajectory
 from pin_metaik.mobile.motion.turn import turn_phases
-from pin_metaik.mobile.motion.vehicle import NOMAD_200, SynchroDrive
+from pin_metaik.mobile.motion.vehicle import NOMAD_200, SynchroDrive, Vehicle
 from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.world.polygons import read_obstacles
 from pin_metaik.optimize import Budget, Metaheuristic
@@ -35,7 +35,7 @@ SEARCH_BUDGET = Budget(evaluations=30 * 500)
 @checked
 def plan_trajectory(
     path: Path | ArrayLike,
-    vehicle: SynchroDrive = NOMAD_200,
+    vehicle: Vehicle = NOMAD_200,
     obstacles: Any = (),
     *,
     method: Method = "dp",
@@ -74,7 +74,9 @@ def plan_trajectory(
         raise InvalidSetting(f"the network was learned for {model.vehicle}, not for {vehicle}")
     keep = vehicle.radius if radius is None else radius
     within("radius", keep, 0)
-    if method == "ann":
+    if method == "ann" and not isinstance(vehicle, SynchroDrive):
+        raise InvalidSetting(f"ann: networks are learned for a SynchroDrive, {vehicle.name} is none; take dp or de")
+    if method == "ann" and isinstance(vehicle, SynchroDrive):
         model = model or learn_turn(vehicle)
     solid = read_obstacles(obstacles)
     began = perf_counter()
@@ -97,6 +99,7 @@ def plan_trajectory(
             seed=repeatable(rng),
             interrupted=speeds.interrupted,
             learned=None if turns is None else turns.report(speeds.v),
+            goal=tuple(route.path.points[-1].tolist()),
         )
 
     return wrapped(lambda: _speeds(route, method, algorithm, budget, rng, turns, watch), planned)
@@ -112,17 +115,18 @@ def drive(route: Route, v: Array, tangents: Array | None = None) -> Trajectory:
             other the robot leaves its path.
     """
     straights = route.straights(v[None], None if tangents is None else tangents[None])[0]
-    ends = np.concatenate(([0.0], v, [0.0]))
+    start, goal = route.ends
+    ends = np.concatenate(([start], v, [goal]))
     phases: list[Phase] = []
     for i, length in enumerate(straights):
         phases += [Phase(t, a) for t, a in straight_phases(float(length), ends[i], ends[i + 1], route.vehicle)]
         if i < len(v):
             omega = 0.0
-            for t, alpha in turn_phases(float(route.turns[i]), route.vehicle):
+            for t, alpha in turn_phases(float(route.turns[i]), route.vehicle, float(v[i])):
                 phases.append(Phase(t, 0.0, alpha, omega))
                 omega += alpha * t
     dx, dy = route.path.points[1] - route.path.points[0]
-    return Trajectory(phases, (*route.path.points[0].tolist(), float(np.arctan2(dy, dx))))
+    return Trajectory(phases, (*route.path.points[0].tolist(), float(np.arctan2(dy, dx))), start)
 
 
 def _speeds(

@@ -16,10 +16,22 @@ from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.motion.turn import clothoid
 from pin_metaik.mobile.paths.path import write_table
-from pin_metaik.optimize.settings import MANY
+from pin_metaik.optimize.settings import MANY, within
 from pin_metaik.output import writable
 
 SAMPLES = 0.02  # s
+
+
+class Moved(NamedTuple):
+    """How far anything between two places of a motion is from the middle of the two at most.
+
+    Attributes:
+        travel: Of the robot's point (n,), m.
+        turn: (n,), rad.
+    """
+
+    travel: Array
+    turn: Array
 
 
 class Phase(NamedTuple):
@@ -79,23 +91,58 @@ class Samples:
 
 
 @checked
+@dataclass(frozen=True)
+class State:
+    """Where a robot is, and how it moves.
+
+    Attributes:
+        x: Position, m.
+        y: Position, m.
+        heading: Direction of travel, rad.
+        v: Speed, m/s.
+        omega: Turning rate, rad/s.
+
+    Raises:
+        InvalidSetting: One of them is no finite number, or the speed is below zero.
+    """
+
+    x: float
+    y: float
+    heading: float
+    v: float = 0.0
+    omega: float = 0.0
+
+    def __post_init__(self) -> None:
+        array("state", (self.x, self.y, self.heading, self.v, self.omega), 5)
+        within("v", self.v, 0)
+
+    @property
+    def pose(self) -> tuple[float, float, float]:
+        """(x, y, heading) in m and rad."""
+        return self.x, self.y, self.heading
+
+
+@checked
 class Trajectory:
-    """A synchro-drive robot's motion as a list of phases, from rest at a pose.
+    """A robot's motion as a list of phases, from a pose.
 
     Attributes:
         phases: What it does, one after the other.
         start: Pose (x, y, heading) in m and rad.
+        v: Speed at the start, m/s.
         duration: Of the whole, s.
     """
 
-    def __init__(self, phases: Sequence[Phase], start: tuple[float, float, float]) -> None:
+    def __init__(self, phases: Sequence[Phase], start: tuple[float, float, float], v: float = 0.0) -> None:
         array("phases", [tuple(phase) for phase in phases] or np.empty((0, 4)), "p", 4)
         array("start", start, 3)
+        within("v", v, 0)
         self.phases = tuple(phases)
         self.start = start
+        self.v = v
         self._begins = np.cumsum([0.0, *(phase.duration for phase in phases)])
         self.duration = float(self._begins[-1])
-        states = [np.array([*start, 0.0])]  # x, y, heading, v at the beginning of each phase
+        states = [np.array([*start, v])]  # x, y, heading, v at the beginning of each phase
         for phase in self.phases:
             states.append(np.concatenate(_moved(states[-1][None], np.array([phase]), phase.duration)))
         self._states = np.array(states)
@@ -106,6 +153,34 @@ class Trajectory:
         x, y, heading, _ = self._states[-1].tolist()
         return x, y, heading
 
+    @checked
+    def state(self, t: float) -> State:
+        """The state at a time t in s: what planning again in motion begins with."""
+        at = self.at(t)
+        v = max(float(at.v[0]), 0.0)  # by rounding it may be below, at rest
+        return State(float(at.x[0]), float(at.y[0]), float(at.heading[0]), v, float(at.omega[0]))
+
+    @checked
+    def poses(self, s: ArrayLike) -> Array:
+        """Poses (n, 3) at times s (n,), in s: x, y in m and the heading in rad."""
+        at = self.at(s)
+        return np.column_stack((at.x, at.y, at.heading))
+
+    @checked
+    def moved(self, a: Array, b: Array) -> Moved:
+        """How far all between times a and b (n,), in s, of one phase is at most from the middle of the two.
+
+        In a phase speed and turning rate change evenly, so none is larger than at one of the two ends.
+        """
+        a = array("a", a, "n")
+        b = array("b", b, len(a))
+        middle, half = (a + b) / 2, (b - a) / 2
+        k = np.clip(np.searchsorted(self._begins, middle, side="right") - 1, 0, max(len(self.phases) - 1, 0))
+        _, acceleration, alpha, _ = np.array(self.phases or [(0.0, 0.0, 0.0, 0.0)])[k].T
+        at = self.at(middle)
+        fastest, turning = np.abs(at.v) + np.abs(acceleration) * half, np.abs(at.omega) + np.abs(alpha) * half
+        return Moved(fastest * half, turning * half)
+
     @property
     def boundaries(self) -> Array:
         """Times (p + 1,) in s at which phases begin and the last ends."""
@@ -113,11 +188,11 @@ class Trajectory:
 
     @checked
     def at(self, t: ArrayLike) -> Samples:
-        """States at times t (n,) in s, by the closed form; before the start and after the end it stands still."""
+        """States at times t (n,) in s, by the closed form; before the start the first, after the end the last."""
         times = np.clip(np.atleast_1d(array("t", t, "...")).ravel(), 0.0, self.duration)
         if not self.phases:
             x, y, heading = (np.full(times.shape, s) for s in self.start)
-            return Samples(times, x, y, heading, *np.zeros((4, len(times))))
+            return Samples(times, x, y, heading, np.full(times.shape, self.v), *np.zeros((3, len(times))))
         k = np.clip(np.searchsorted(self._begins, times, side="right") - 1, 0, len(self.phases) - 1)
         phases = np.array(self.phases)[k]
         within = np.minimum(times - self._begins[k], phases[:, 0])

@@ -2,7 +2,9 @@
 
 The robot leaves the incoming line a tangent length ``alpha = v g(theta)`` before the corner and meets the outgoing one
 as far behind it. Its curve is a piece of clothoid, perhaps an arc, and the clothoid backwards: curvature is continuous.
-Everything scales with the speed v, so ``g`` and ``e`` say all about the shape, and the time does not depend on v.
+With a synchro-drive everything scales with the speed v, so ``g`` and ``e`` say all about the shape, and the time does
+not depend on v. A differential drive turns the more slowly the faster it drives, so its curves at higher speeds have
+longer arcs; what follows holds at each speed.
 """
 
 from __future__ import annotations
@@ -15,58 +17,61 @@ from scipy.special import fresnel
 
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry
-from pin_metaik.mobile.motion.vehicle import SynchroDrive
+from pin_metaik.mobile.motion.vehicle import Vehicle
 
 
-def lead_time(theta: ArrayLike, vehicle: SynchroDrive) -> Array:
+def lead_time(theta: ArrayLike, vehicle: Vehicle, v: ArrayLike = 0.0) -> Array:
     """``g(theta)`` in s: at speed v the turn begins ``v g`` before the corner and ends as far behind it.
 
     Args:
         theta: Angles (...) between the two lines, 0 to below pi, in rad.
         vehicle: The robot.
+        v: Speeds (...), m/s; they matter to a differential drive only.
 
     Raises:
         InvalidGeometry: An angle outside [0, pi): who turns back on the spot has no corner to round.
     """
-    return _shape(theta, vehicle)[0]
+    return _shape(theta, vehicle, v)[0]
 
 
-def cut_time(theta: ArrayLike, vehicle: SynchroDrive) -> Array:
+def cut_time(theta: ArrayLike, vehicle: Vehicle, v: ArrayLike = 0.0) -> Array:
     """``e(theta)`` in s: at speed v the middle of the curve is ``v e`` from the corner.
 
     Args:
         theta: Angles (...), 0 to below pi, in rad.
         vehicle: The robot.
+        v: Speeds (...), m/s; they matter to a differential drive only.
 
     Raises:
         InvalidGeometry: An angle outside [0, pi).
     """
-    return _shape(theta, vehicle)[1]
+    return _shape(theta, vehicle, v)[1]
 
 
-def turn_time(theta: ArrayLike, vehicle: SynchroDrive) -> Array:
-    """Time in s to turn through angles theta (...) in rad, whatever the speed; on the spot, too."""
+def turn_time(theta: ArrayLike, vehicle: Vehicle, v: ArrayLike = 0.0) -> Array:
+    """Time in s to turn through angles theta (...) in rad at speeds v (...), default on the spot."""
     turn = np.abs(np.asarray(theta, dtype=float))
-    v_s, a_s = vehicle.omega_max, vehicle.alpha_max
-    return np.asarray(np.where(turn <= vehicle.saturation, 2 * np.sqrt(turn / a_s), turn / v_s + v_s / a_s))
+    v_s, a_s = vehicle.omega_at(v), vehicle.alpha_max
+    return np.asarray(np.where(turn <= v_s**2 / a_s, 2 * np.sqrt(turn / a_s), turn / v_s + v_s / a_s))
 
 
-def turn_phases(theta: float, vehicle: SynchroDrive) -> list[tuple[float, float]]:
-    """Durations (s) and angular accelerations (rad/s^2) that turn through theta (rad), to the left above zero."""
-    half = min(abs(theta) / 2, vehicle.saturation / 2)
+def turn_phases(theta: float, vehicle: Vehicle, v: float = 0.0) -> list[tuple[float, float]]:
+    """Durations (s) and angular accelerations (rad/s^2) that turn through theta (rad) at v, to the left above zero."""
+    omega = float(vehicle.omega_at(v))
+    half = min(abs(theta) / 2, omega**2 / vehicle.alpha_max / 2)
     rise = math.sqrt(2 * half / vehicle.alpha_max)
-    steady = (abs(theta) - 2 * half) / vehicle.omega_max
+    steady = (abs(theta) - 2 * half) / omega
     alpha = math.copysign(vehicle.alpha_max, theta)
     return [(time, a) for time, a in ((rise, alpha), (steady, 0.0), (rise, -alpha)) if time > 0]
 
 
-def turn_shape(theta: float, vehicle: SynchroDrive, count: int = 257) -> Array:
-    """Points (count, 2) of the curve at speed 1 m/s: the corner at the origin, coming along x, turning left.
+def turn_shape(theta: float, vehicle: Vehicle, v: float = 0.0, count: int = 257) -> Array:
+    """Points (count, 2) of the curve at speed v, per m/s: the corner at the origin, coming along x, turning left.
 
-    At speed v it is v times as large. With an odd count the point nearest to the corner is among them.
+    It is v times as large. With an odd count the point nearest to the corner is among them.
     """
-    g = float(lead_time(theta, vehicle))
-    phases = turn_phases(theta, vehicle)
+    g = float(lead_time(theta, vehicle, v))
+    phases = turn_phases(theta, vehicle, v)
     t = np.linspace(0, sum(duration for duration, _ in phases), count)
     z = np.full(count, complex(-g, 0.0))
     heading = omega = 0.0
@@ -105,14 +110,14 @@ def clothoid(theta: ArrayLike, omega: ArrayLike, alpha: ArrayLike, t: ArrayLike)
     return z.reshape(shape)
 
 
-def _shape(theta: ArrayLike, vehicle: SynchroDrive) -> tuple[Array, Array]:
+def _shape(theta: ArrayLike, vehicle: Vehicle, v: ArrayLike) -> tuple[Array, Array]:
     """g and e (...), by Fresnel integrals of the rising half of the turn."""
     theta = np.asarray(theta, dtype=float)
     if not np.all((theta >= 0) & (theta < np.pi)):
         raise InvalidGeometry(
             f"a turn is an angle from 0 to below pi (180 degrees), got {theta}: the robot can turn back on the spot"
         )
-    v_s, a_s = vehicle.omega_max, vehicle.alpha_max
+    v_s, a_s = vehicle.omega_at(v), vehicle.alpha_max
     h = theta / 2
     th1 = np.minimum(h, v_s**2 / (2 * a_s))
     t1 = np.sqrt(2 * th1 / a_s)

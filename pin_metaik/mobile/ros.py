@@ -1,0 +1,111 @@
+"""Out to ROS: paths and motions as ``nav_msgs/Path``, in YAML as ``ros2 topic pub`` takes it, or in JSON."""
+
+from __future__ import annotations
+
+import json
+from importlib.util import find_spec
+from pathlib import Path as File
+from typing import Any
+
+import numpy as np
+
+from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
+from pin_metaik.errors import InvalidSetting, MissingExtra
+from pin_metaik.mobile.curves.curve import STEP, Curve
+from pin_metaik.mobile.motion.trajectory import Trajectory
+from pin_metaik.mobile.paths.path import Path
+from pin_metaik.optimize.settings import within
+from pin_metaik.output import writable
+
+FRAME = "map"
+NANO = 1_000_000_000
+EVERY = 0.1  # s
+
+Driven = Path | Curve | Trajectory
+
+
+@checked
+def nav_path(of: Driven, frame: str = FRAME, *, stamp: float = 0.0, every: float | None = None) -> dict[str, Any]:
+    """A path or motion as the plain values of a ``nav_msgs/Path``.
+
+    Every pose has the heading as a quaternion: of a polyline that of the segment that begins there. Poses of a
+    trajectory are stamped with their times; others with the one stamp.
+
+    Args:
+        of: A ``Path``, a ``Curve`` or a ``Trajectory``.
+        frame: ``frame_id`` of all headers.
+        stamp: When it begins, s since ROS' epoch.
+        every: Between poses, s of a trajectory (default 0.1) or m of a curve (default 0.05); a path has its points.
+
+    Raises:
+        InvalidSetting: A stamp below zero, or a distance between poses that is not above zero.
+    """
+    within("stamp", stamp, 0, 2**31 - 1)
+    poses, times = _poses(of, every)
+    return {
+        "header": _header(frame, stamp),
+        "poses": [
+            {"header": _header(frame, stamp + t), "pose": _pose(*pose)}
+            for t, pose in zip(times.tolist(), poses.tolist(), strict=True)
+        ],
+    }
+
+
+@checked
+def write_nav_path(
+    file: str | File, of: Driven, frame: str = FRAME, *, stamp: float = 0.0, every: float | None = None
+) -> None:
+    """Write a path or motion as a ``nav_msgs/Path``: ``.yaml`` or ``.json``; see ``nav_path``.
+
+    Raises:
+        InvalidSetting: Another suffix; see ``nav_path``.
+        CannotWrite: The file cannot be written.
+        MissingExtra: YAML is wanted and PyYAML is not installed.
+    """
+    where = ros_file(file)
+    message = nav_path(of, frame, stamp=stamp, every=every)
+    if where.suffix.lower() == ".json":
+        text = json.dumps(message, allow_nan=False)
+    else:
+        import yaml
+
+        text = yaml.safe_dump(message, sort_keys=False)
+    where.write_text(text, encoding="utf-8")
+
+
+def ros_file(file: str | File) -> File:
+    """The path of a file that a ``nav_msgs/Path`` can be written to."""
+    suffix = File(file).suffix.lower()
+    if suffix not in (".yaml", ".yml", ".json"):
+        raise InvalidSetting(f"a nav_msgs/Path is written as .yaml or .json, not as {str(file)!r}")
+    if suffix != ".json" and find_spec("yaml") is None:
+        raise MissingExtra(f"writing {file}", "mobile")
+    return writable(file)
+
+
+def _poses(of: Driven, every: float | None) -> tuple[Array, Array]:
+    """Poses (n, 3) and their times (n,), s after the beginning."""
+    match of:
+        case Trajectory():
+            samples = of.sample(EVERY if every is None else every)
+            return np.column_stack((samples.x, samples.y, samples.heading)), samples.t
+        case Curve():
+            poses = of.poses(of.places(STEP if every is None else every))
+            return poses, np.zeros(len(poses))
+        case Path():
+            along = np.diff(of.points, axis=0)
+            headings = np.arctan2(along[:, 1], along[:, 0])
+            return np.column_stack((of.points, np.append(headings, headings[-1]))), np.zeros(len(of.points))
+
+
+def _header(frame: str, t: float) -> dict[str, Any]:
+    seconds, nanoseconds = divmod(round(t * NANO), NANO)
+    return {"stamp": {"sec": seconds, "nanosec": nanoseconds}, "frame_id": frame}
+
+
+def _pose(x: float, y: float, heading: float) -> dict[str, Any]:
+    return {
+        "position": {"x": x, "y": y, "z": 0.0},
+        "orientation": {"x": 0.0, "y": 0.0, "z": float(np.sin(heading / 2)), "w": float(np.cos(heading / 2))},
+    }
