@@ -1,0 +1,47 @@
+"""The processor that machine code in a wheel is made for: one whose instructions all but old machines have."""
+
+from __future__ import annotations
+
+import os
+import platform
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+
+from llvmlite import binding
+
+
+@dataclass(frozen=True)
+class Baseline:
+    """A processor, by LLVM's names."""
+
+    name: str
+    instructions: frozenset[str]
+    """That a processor must have to run its code."""
+
+    @property
+    def environment(self) -> Mapping[str, str]:
+        """Variables with which numba compiles for it."""
+        return {**os.environ, "NUMBA_CPU_NAME": self.name, "NUMBA_CPU_FEATURES": ""}
+
+
+X86_64_V3 = Baseline(
+    "x86-64-v3",  # Intel since 2013, AMD since 2015
+    frozenset("avx avx2 bmi bmi2 cx16 f16c fma lzcnt movbe popcnt sahf sse3 sse4.1 sse4.2 ssse3 xsave".split()),
+)
+ARMV8 = Baseline("generic", frozenset({"neon"}))
+APPLE_M1 = Baseline("apple-m1", frozenset({"neon", "dotprod", "fullfp16", "lse", "rdm"}))
+
+
+@cache
+def baseline() -> Baseline | None:
+    """Of this machine's architecture; None: there is none, or this machine is older."""
+    match platform.machine().lower():
+        case "x86_64" | "amd64":
+            processor = X86_64_V3
+        case "arm64" | "aarch64":
+            processor = APPLE_M1 if platform.system() == "Darwin" else ARMV8
+        case _:
+            return None
+    here = binding.get_host_cpu_features()
+    return processor if all(here.get(instruction) for instruction in processor.instructions) else None
