@@ -1,4 +1,4 @@
-"""``pin-metaik warm``: what is made once on a machine is made now, for a container's image or before a demonstration."""
+"""``pin-metaik warm``: what is made once on a machine is made now, for a container or before a demonstration."""
 
 from __future__ import annotations
 

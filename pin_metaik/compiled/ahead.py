@@ -46,7 +46,7 @@ class Version:
 
 def versions() -> tuple[list[Version], list[str]]:
     """All of them, and what is missing because an optional dependency is, with how to install it."""
-    missing = {}
+    missing: dict[str, None] = {}
     for module in modules():
         try:
             import_module(module)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import platform
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 
@@ -13,21 +11,21 @@ from llvmlite import binding
 
 @dataclass(frozen=True)
 class Baseline:
-    """A processor, by LLVM's names."""
+    """A processor, by LLVM's names.
+
+    Attributes:
+        name: For ``NUMBA_CPU_NAME``, with ``NUMBA_CPU_FEATURES`` empty.
+        instructions: That a processor must have to run its code.
+    """
 
     name: str
     instructions: frozenset[str]
-    """That a processor must have to run its code."""
-
-    @property
-    def environment(self) -> Mapping[str, str]:
-        """Variables with which numba compiles for it."""
-        return {**os.environ, "NUMBA_CPU_NAME": self.name, "NUMBA_CPU_FEATURES": ""}
 
 
 X86_64_V3 = Baseline(
     "x86-64-v3",  # Intel since 2013, AMD since 2015
-    frozenset("avx avx2 bmi bmi2 cx16 f16c fma lzcnt movbe popcnt sahf sse3 sse4.1 sse4.2 ssse3 xsave".split()),
+    frozenset({"avx", "avx2", "bmi", "bmi2", "cx16", "f16c", "fma", "lzcnt", "movbe", "popcnt", "sahf"})
+    | {"sse3", "sse4.1", "sse4.2", "ssse3", "xsave"},
 )
 ARMV8 = Baseline("generic", frozenset({"neon"}))
 APPLE_M1 = Baseline("apple-m1", frozenset({"neon", "dotprod", "fullfp16", "lse", "rdm"}))
