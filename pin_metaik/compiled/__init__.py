@@ -29,7 +29,7 @@ def jit(signature: str) -> Callable[[F], F]:
     def lazy(function: F) -> F:
         loop = Loop(function, signature)
         LOOPS[loop.module, loop.name] = loop
-        optional, version = loop.optional, cache(loop.compiled)
+        optional, version = loop.optional, cache(loop.announced)
 
         @wraps(function)
         def call(*arguments: Any) -> Any:

@@ -71,23 +71,23 @@ class Loop:
         return MachineCode(self.function)
 
     def compiled(self, without: bool = False) -> Callable[..., Any]:
-        """Numba's function, compiled now or read; it says so if that takes long."""
+        """Numba's function, compiled now or read from the cache."""
         with Pressed(held=True) as pressed:  # broken off, numba would compile nothing more in this process
-            loop = self._compiled(without)
+            loop = kept(fastmath=LOOSE, **OPTIONS)(self.function)
+            signature = self.signatures[without]
+            with nullcontext() if loop._cache.has(signature) else loop._cache.turn():
+                loop.compile(signature)
+            loop.disable_compile()
             pressed.check()
-        return loop
+        return cast(Callable[..., Any], loop)
 
-    def _compiled(self, without: bool) -> Callable[..., Any]:
-        signature = self.signatures[without]
+    def announced(self, without: bool = False) -> Callable[..., Any]:
+        """The same, with a word if it takes long."""
         notice = Timer(WAIT, _tell)
         notice.daemon = True
         notice.start()
         try:
-            loop = kept(fastmath=LOOSE, **OPTIONS)(self.function)
-            with nullcontext() if loop._cache.has(signature) else loop._cache.turn():
-                loop.compile(signature)
-            loop.disable_compile()
-            return cast(Callable[..., Any], loop)
+            return self.compiled(without)
         finally:
             notice.cancel()
 
