@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 
@@ -20,6 +21,10 @@ class Baseline:
 
     name: str
     instructions: frozenset[str]
+
+    def fits(self, here: Mapping[str, bool]) -> bool:
+        """Whether a processor with (True) or without (False) these instructions runs its code."""
+        return all(here.get(instruction, False) for instruction in self.instructions)
 
 
 X86_64_V3 = Baseline(
@@ -41,5 +46,4 @@ def baseline() -> Baseline | None:
             processor = APPLE_M1 if platform.system() == "Darwin" else ARMV8
         case _:
             return None
-    here = binding.get_host_cpu_features()
-    return processor if all(here.get(instruction) for instruction in processor.instructions) else None
+    return processor if processor.fits(binding.get_host_cpu_features()) else None
