@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from pin_metaik.compiled import ahead, sources
 
 
@@ -19,6 +21,7 @@ def warm(folder: Path, *arguments: str, **environment: str) -> subprocess.Comple
     )
 
 
+@pytest.mark.slow
 def test_every_loop_is_compiled_and_then_left_alone() -> None:
     loops, missing = ahead.versions()
     first, second = warm(sources.PACKAGE.parent), warm(sources.PACKAGE.parent, "--robot", "ur5")
@@ -33,7 +36,7 @@ def test_where_nothing_can_be_kept_nothing_is_begun(tmp_path: Path) -> None:
     shutil.copytree(sources.PACKAGE, tmp_path / "pin_metaik", ignore=shutil.ignore_patterns("__pycache__"))
     for folder in {path.parent for path in (tmp_path / "pin_metaik").rglob("*.py")}:
         (folder / "__pycache__").touch()  # a file where the folder would be
-    nowhere = {name: os.devnull for name in ("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR", "PIN_METAIK_CACHE")}
+    nowhere = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR", "PIN_METAIK_CACHE"), os.devnull)
     done = warm(tmp_path, **nowhere)
     assert done.returncode == 2 and "set NUMBA_CACHE_DIR" in done.stderr
     assert "compiling" not in done.stderr
