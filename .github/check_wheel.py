@@ -32,7 +32,7 @@ kinds = {
     "a free axis": lambda: mik.solve_ik(chain, free).success,
     "all": lambda: len(mik.solve_ik_all(chain, pose)) > 0,
     "the nearest": lambda: mik.solve_ik(chain, pose, solver=mik.IKSolver(select="nearest")).success,
-    "a path": lambda: mik.solve_ik_path(chain, [pose, pose], max_step=0.1).success,
+    "a path": lambda: bool(mik.solve_ik_path(chain, [pose, pose], max_step=0.1)),
     "a batch": lambda: bool(np.all(mik.solve_ik_batch(chain, [pose] * 10).success)),
     "a seeder": lambda: mik.solve_ik(chain, pose, solver=mik.IKSolver("gwo", "dls")).success,
     "a world": lambda: mik.solve_ik(chain, pose, world=mik.CollisionWorld(robot)).success,

@@ -12,6 +12,7 @@ import argparse
 import json
 import os
 import platform
+import re
 import shutil
 import statistics
 import subprocess
@@ -158,9 +159,9 @@ def measured(folder: Path, baseline: str) -> str:
     other = Place(folder / "baseline", NUMBA_CPU_NAME=baseline, NUMBA_CPU_FEATURES="")
     seconds = {label(*loop): time for *loop, time in own.lines(LOOPS)}
     kinds = {kind: [label(*loop) for loop in used] for kind, used in own.lines(KINDS)}
-    cpu = next((line for line in Path("/proc/cpuinfo").open() if line.startswith("model name")), ": ?").split(": ")[1]
+    cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
     lines = [
-        f"`python {' '.join(sys.argv)}`, {date.today()}, {cpu.strip()} with {os.cpu_count()} cores, Python "
+        f"`python {' '.join(sys.argv)}`, {date.today()}, {cpu[1] if cpu else platform.machine()} with {os.cpu_count()} cores, Python "
         f"{platform.python_version()}.",
         "",
         "| the first solve in a process with an empty cache | loops that it needs, and no kind above did | s |",
@@ -176,8 +177,8 @@ def measured(folder: Path, baseline: str) -> str:
     lines += [f"| `{loop}` | {time:.1f} |" for loop, time in sorted(seconds.items(), key=lambda item: -item[1])]
     lines += [f"| **all {len(seconds)}** | **{sum(seconds.values()):.0f}** |", ""]
     lines += [
-        f"| `solve_ik`, {200 * ROUNDS} random poses | time with code for {baseline} over that with this processor's own "
-        "| equal to the last bit | largest difference of a joint, rad |",
+        f"| `solve_ik`, {200 * ROUNDS} random poses | time with code for {baseline}, over that with this processor's "
+        "own | answers equal to the last bit | largest difference of a joint, rad |",
         "|---|---|---|---|",
         *speeds(own, other),
     ]
