@@ -159,9 +159,10 @@ def measured(folder: Path, baseline: str) -> str:
     other = Place(folder / "baseline", NUMBA_CPU_NAME=baseline, NUMBA_CPU_FEATURES="")
     seconds = {label(*loop): time for *loop, time in own.lines(LOOPS)}
     kinds = {kind: [label(*loop) for loop in used] for kind, used in own.lines(KINDS)}
-    cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
+    found = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
+    cpu = found[1] if found else platform.machine()
     lines = [
-        f"`python {' '.join(sys.argv)}`, {date.today()}, {cpu[1] if cpu else platform.machine()} with {os.cpu_count()} cores, Python "
+        f"`python {' '.join(sys.argv)}`, {date.today()}, {cpu} with {os.cpu_count()} cores, Python "
         f"{platform.python_version()}.",
         "",
         "| the first solve in a process with an empty cache | loops that it needs, and no kind above did | s |",
