@@ -24,7 +24,7 @@ from typing import Any
 
 PACKAGE = Path(__file__).parents[1] / "pin_metaik"
 BEGIN, END = "<!-- measured -->\n", "<!-- end -->\n"
-ROUNDS = 31  # blocks of each of the two
+ROUNDS = 21  # blocks of each of the two
 
 LOOPS = """
 import json, time
@@ -84,7 +84,7 @@ for name in ("panda", "ur5", "tiago"):
 for line in sys.stdin:
     answer = {}
     for name, (chain, rng, low, high) in arms.items():
-        poses = [chain.placements(chain.q(low + (high - low) * rng.random(len(low))))[0] for _ in range(200)]
+        poses = [chain.placements(chain.q(low + (high - low) * rng.random(len(low))))[0] for _ in range(2000)]
         began = time.process_time()
         found = [mik.solve_ik(chain, pose).q for pose in poses]
         answer[name] = time.process_time() - began, np.array(found).tolist()
@@ -178,7 +178,7 @@ def measured(folder: Path, baseline: str) -> str:
     lines += [f"| `{loop}` | {time:.1f} |" for loop, time in sorted(seconds.items(), key=lambda item: -item[1])]
     lines += [f"| **all {len(seconds)}** | **{sum(seconds.values()):.0f}** |", ""]
     lines += [
-        f"| `solve_ik`, {200 * ROUNDS} random poses | time with code for {baseline}, over that with this processor's "
+        f"| `solve_ik`, {2000 * ROUNDS} random poses | time with code for {baseline}, over that with this processor's "
         "own | answers equal to the last bit | largest difference of a joint, rad |",
         "|---|---|---|---|",
         *speeds(own, other),
