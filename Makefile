@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 
-.PHONY: demo test lint tests quick urdf clean
+.PHONY: demo test lint tests quick urdf wheel check-release clean
 
 demo: $(VENV)/installed
 	$(BIN)/pin-metaik demo
@@ -24,6 +24,16 @@ quick: $(VENV)/developed
 
 urdf: $(VENV)/installed
 	$(BIN)/pin-metaik urdf --all
+
+# The sdist, and a wheel for this platform and this Python with machine code in it.
+wheel: $(VENV)/developed
+	rm -rf dist
+	$(BIN)/python -m build --outdir dist .
+	$(BIN)/python .github/wheel.py dist/*.whl
+
+check-release: wheel
+	$(BIN)/python -m twine check --strict dist/*
+	$(BIN)/python .github/check_wheel.py dist/*.whl
 
 clean:
 	rm -rf $(VENV) dist build .mypy_cache .ruff_cache .pytest_cache

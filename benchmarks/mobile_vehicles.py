@@ -136,8 +136,8 @@ def again(count: int) -> Iterator[str]:
         )
     yield "\n\n## Planning again in motion\n"
     yield (
-        "A plan stopped at four times and planned again from there in the same world, with one path: the largest jump of "
-        "position, heading, speed or turning rate; by how much the whole takes longer, percent; ms to plan.\n"
+        "A plan stopped at four times and planned again from there in the same world, with one path: the largest jump "
+        "of position, heading, speed or turning rate; by how much the whole takes longer, percent; ms to plan.\n"
     )
     heading = ["robot", "plans", "none found", "largest jump", "longer by, least", "median", "most", "ms, median"]
     yield table(heading, rows)

@@ -1,6 +1,6 @@
 """A mobile robot drives up to an arm, which reaches for it: one Pinocchio, one viewer.
 
-``--show`` plays it in a browser; that takes ``pip install viser pycollada``.
+``--show`` plays it in a browser; that takes ``pip install '.[viewer]'`` in the clone.
 """
 
 import sys

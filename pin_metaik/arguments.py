@@ -199,6 +199,7 @@ def _hints(door: Callable[..., Any]) -> dict[str, Any]:
 
 def _reader(hint: Any) -> Read:
     """What reads a value as an annotation has it."""
+    hint = _meant(hint)
     origin, inside = get_origin(hint), get_args(hint)
     if _free(hint):
         return _anything
@@ -219,8 +220,18 @@ def _reader(hint: Any) -> Read:
     return plain if plain is not None else _instance(kind)
 
 
+def _meant(hint: Any) -> Any:
+    """What an annotation stands for, if it is a ``type`` of Python 3.12 or later, as NumPy's are since 2.5."""
+    origin = get_origin(hint)
+    value = getattr(hint if origin is None else origin, "__value__", None)
+    if value is None:
+        return hint
+    return _meant(value if origin is None else value[get_args(hint)])
+
+
 def _free(hint: Any) -> bool:
     """Whether an annotation takes anything, or what only the function itself can tell: poses and other numbers."""
+    hint = _meant(hint)
     if hint is Any or hint is object or isinstance(hint, TypeVar):
         return True
     if get_origin(hint) in (Union, types.UnionType):
@@ -404,6 +415,7 @@ NAMES: dict[Any, str] = {
 
 def _words(hint: Any) -> str:
     """An annotation in words."""
+    hint = _meant(hint)
     origin, inside = get_origin(hint), get_args(hint)
     if origin in (Union, types.UnionType):
         return " or ".join(dict.fromkeys(_words(one) for one in inside))

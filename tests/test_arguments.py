@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 import pytest
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import TypeAliasType  # of typing itself since Python 3.12
 
 from pin_metaik.arguments import array, checked, checked_as, instance, number, shown
 from pin_metaik.errors import InvalidBounds, InvalidSetting
@@ -169,3 +170,22 @@ def test_what_is_shown_of_a_value_is_short() -> None:
     assert shown(Odd()) == "a Odd"
     assert shown(10**5000) == "a int"
     assert shown([1, 2]) == "[1, 2]"
+
+
+T = TypeVar("T")
+Row = TypeAliasType("Row", Sequence[T], type_params=(T,))
+Numbers = TypeAliasType("Numbers", NDArray[np.float64])
+
+
+@checked
+def named(row: Row[int] = (), numbers: Numbers | None = None) -> tuple[object, object]:
+    return row, numbers
+
+
+def test_aliases_of_types_are_read_as_what_they_stand_for() -> None:  # NumPy's own are such aliases since 2.5
+    row, numbers = named([1, np.int64(2)], [1, 2])  # type: ignore[arg-type]
+    assert row == (1, 2) and isinstance(numbers, np.ndarray) and numbers.dtype == float
+    with pytest.raises(InvalidSetting, match="row: expected a list, each entry a whole number"):
+        named("ab")  # type: ignore[arg-type]
+    with pytest.raises(InvalidSetting, match="numbers: expected an array of numbers or None"):
+        named((), "ab")  # type: ignore[arg-type]

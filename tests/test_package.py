@@ -1,13 +1,17 @@
 """The package as it is installed: quick to import, complete in its wheel, quick to answer."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
+import tomllib
 import venv
 from pathlib import Path
 
 import pytest
+
+import pin_metaik as mik
 
 ROOT = Path(__file__).parent.parent
 
@@ -23,8 +27,13 @@ print(imported, time.perf_counter() - began, mik.__file__)
 """
 
 
+def bare() -> dict[str, str]:
+    """The environment without paths to this checkout."""
+    return {key: value for key, value in os.environ.items() if key not in ("PYTHONPATH", "MYPYPATH")}
+
+
 def run(python: str | Path, cache: Path | None, cwd: Path) -> subprocess.CompletedProcess[str]:
-    environment = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
+    environment = bare()
     if cache is not None:
         environment["NUMBA_CACHE_DIR"] = str(cache)
     return subprocess.run([python, "-c", SOLVE], capture_output=True, text=True, env=environment, cwd=cwd, check=True)
@@ -65,3 +74,29 @@ def test_the_wheel_solves_in_an_empty_environment(tmp_path: Path) -> None:
     subprocess.run([python, "-m", "pip", "install", "--quiet", wheel], check=True, capture_output=True)
     done = run(python, tmp_path / "cache", tmp_path)
     assert "site-packages" in done.stdout
+    program = shutil.copy(ROOT / "tests" / "typed_program.py", tmp_path)  # where nothing else can be imported
+    strict = ["-m", "mypy", "--strict", "--cache-dir", str(tmp_path / "mypy"), "--python-executable", str(python)]
+    typed = subprocess.run([sys.executable, *strict, program], capture_output=True, text=True, cwd=tmp_path, env=bare())
+    assert typed.returncode == 0, typed.stdout
+
+
+def test_the_typed_program_uses_every_public_name_and_runs() -> None:
+    text = (ROOT / "tests" / "typed_program.py").read_text()
+    assert [name for name in mik.__all__ if not re.search(rf"\bmik\.{name}\b", text)] == []
+    done = subprocess.run([sys.executable, ROOT / "tests" / "typed_program.py"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_the_extra_all_holds_every_other_that_installs_everywhere() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    extras = project["optional-dependencies"]
+    (everything,) = extras["all"]
+    named = set(everything.removeprefix("pin-metaik[").removesuffix("]").split(","))
+    assert named == set(extras) - {"all", "dev", "tracik", "toolbox"}
+
+
+def test_the_citation_and_the_recipe_are_of_this_version() -> None:
+    for file in ("CITATION.cff", ".github/conda/recipe.yaml"):
+        assert re.search(rf'^\s*version: "?{re.escape(mik.__version__)}"?$', (ROOT / file).read_text(), re.MULTILINE), (
+            file
+        )

@@ -11,7 +11,7 @@ from rich.console import Console
 from typer.core import TyperGroup
 
 from pin_metaik import __version__
-from pin_metaik.cli import compare, demo, plan, reproduce, robots, solve, stewart
+from pin_metaik.cli import compare, demo, plan, reproduce, robots, solve, stewart, warm
 from pin_metaik.cli.codes import INTERRUPTED, NONSENSE
 from pin_metaik.cli.many import ManyValues
 from pin_metaik.errors import MetaIKError
@@ -45,6 +45,7 @@ app.command("compare", cls=ManyValues)(compare.compare)
 app.command("report")(compare.report)
 app.command("replay")(compare.replay)
 app.command("plan")(plan.plan)
+app.command("warm")(warm.warm)
 app.add_typer(stewart.app, name="stewart")
 
 

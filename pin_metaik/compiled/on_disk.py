@@ -2,14 +2,16 @@
 
 Numba's own cache looks at the one file that a loop stands in, so that a loop kept the old code of the parts it has from
 other files; and it wants a folder it can write to even where the code is there to be read. Here code is read from the
-first folder that has it and written to the first that takes it; without any, everything is compiled anew in each
-process.
+wheel, if that carries some that fits, or the first folder that has it, and written to the first that takes it; without
+any, everything is compiled anew in each process.
 """
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
@@ -17,9 +19,15 @@ from pickle import UnpicklingError
 from typing import Any
 
 from numba.core import caching, config
+from numba.core.registry import cpu_target
 
 from pin_metaik.cache_folder import cache_folder
+from pin_metaik.compiled.baseline import Baseline, baseline
 from pin_metaik.compiled.sources import PACKAGE, digest
+from pin_metaik.locks import locked
+
+SHIPPED = PACKAGE / "compiled" / "machine_code"  # in a wheel for one platform
+UNREADABLE = OSError, EOFError, ValueError, UnpicklingError  # may not be read or written, or was cut off
 
 
 def folders(file: Path) -> Iterator[Path]:
@@ -27,7 +35,7 @@ def folders(file: Path) -> Iterator[Path]:
 
     ``$NUMBA_CACHE_DIR`` if it is set, then ``__pycache__`` beside the file, then the user's cache folder.
     """
-    inside = file.parent.relative_to(PACKAGE)
+    inside = _inside(file)
     installation = f"{PACKAGE.name}-{sha256(bytes(PACKAGE)).hexdigest()[:16]}"  # several may share a folder
     if config.CACHE_DIR:
         yield Path(config.CACHE_DIR) / installation / inside
@@ -36,18 +44,63 @@ def folders(file: Path) -> Iterator[Path]:
         yield own / "machine_code" / installation / inside
 
 
+def _inside(file: Path) -> Path:
+    """The folder of a source file, seen from the package's."""
+    return file.parent.relative_to(PACKAGE)
+
+
+def kept_in(file: Path) -> Path | None:
+    """The first of these folders that can be written, or made."""
+    for folder in folders(file):
+        there = next(above for above in (folder, *folder.absolute().parents) if above.exists())
+        if there.is_dir() and os.access(there, os.W_OK | os.X_OK):
+            return folder
+    return None
+
+
 class MachineCode(caching.NullCache):
     """What numba's dispatcher asks for the machine code of one function."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
-        self._shelves = [Shelf(function, folder) for folder in folders(Path(function.__code__.co_filename))]
+        self._function, self._file = function, Path(function.__code__.co_filename)
+        self._shelves = [Shelf(function, folder) for folder in folders(self._file)]
+        processor = baseline()
+        shipped = [] if processor is None else [Shipped(function, SHIPPED / _inside(self._file), processor)]
+        self._readable: list[Shelf] = [*shipped, *self._shelves]
+
+    def has(self, signature: str) -> bool:
+        """Whether there is code for a signature, to go by the indices; a file may still turn out to be cut off."""
+        for shelf in self._readable:
+            with suppress(*UNREADABLE):
+                if shelf.has(signature):
+                    return True
+        return False
+
+    @contextmanager
+    def turn(self) -> Iterator[None]:
+        """While one process compiles the function, others wait for the code that it writes."""
+        folder = kept_in(self._file)
+        with ExitStack() as held:
+            if folder is not None:  # or there is nothing to wait for
+                with suppress(OSError):
+                    folder.mkdir(parents=True, exist_ok=True)
+                    held.enter_context(
+                        locked(folder / f".{self._file.stem}.{self._function.__qualname__}.lock", wait=True)
+                    )
+            yield
+
+    def ship(self, signature: str, code: Any, folder: Path) -> None:
+        """Write code as a wheel carries it, below a folder."""
+        inside = folder / _inside(self._file)
+        inside.mkdir(parents=True, exist_ok=True)
+        Shelf(self._function, inside).save_overload(signature, code)
 
     def load_overload(self, signature: Any, context: Any) -> Any:
         """The code for a signature from the first folder that has it, or None."""
-        for shelf in self._shelves:
+        for shelf in self._readable:
             try:
                 code = shelf.load_overload(signature, context)
-            except (OSError, EOFError, ValueError, UnpicklingError):  # may not be read, or was cut off
+            except UNREADABLE:
                 continue
             if code is not None:
                 return code
@@ -59,7 +112,7 @@ class MachineCode(caching.NullCache):
             try:
                 Path(shelf.cache_path).mkdir(parents=True, exist_ok=True)
                 shelf.save_overload(signature, code)
-            except (OSError, EOFError, ValueError, UnpicklingError):
+            except UNREADABLE:
                 continue
             return
 
@@ -70,6 +123,22 @@ class Shelf(caching.FunctionCache):
     def __init__(self, function: Callable[..., Any], folder: Path) -> None:
         self._impl_class = partial(_Implementation, folder=folder)
         super().__init__(function)
+
+    def has(self, signature: str) -> bool:
+        """Whether the index knows code for a signature and this processor."""
+        return self._index_key(signature, cpu_target.target_context.codegen()) in self._cache_file._load_index()
+
+
+class Shipped(Shelf):
+    """Code that came with the package, for a processor whose instructions this one has."""
+
+    def __init__(self, function: Callable[..., Any], folder: Path, processor: Baseline) -> None:
+        super().__init__(function, folder)
+        self._processor = processor
+
+    def _index_key(self, sig: Any, codegen: Any) -> Any:
+        signature, (triple, _, _), source = super()._index_key(sig, codegen)
+        return signature, (triple, self._processor.name, ""), source
 
 
 class _Implementation(caching.CompileResultCacheImpl):

@@ -17,6 +17,12 @@ COMPILES = re.compile(rb"^from pin_metaik\.compiled import", re.MULTILINE)
 IMPORTS = re.compile(rb"^from pin_metaik(?:\.([\w.]+))? import", re.MULTILINE)
 
 
+def modules() -> list[str]:
+    """The modules of the package that compile something."""
+    files = (path for path in sorted(PACKAGE.rglob("*.py")) if COMPILES.search(path.read_bytes()))
+    return [".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts) for path in files]
+
+
 @cache
 def digest() -> bytes:
     """SHA-256 of the names and contents of these files; of nothing, where the package holds no sources."""

@@ -1,0 +1,38 @@
+"""``pin-metaik warm``: what is made once on a machine is made now, for a container or before a demonstration."""
+
+from __future__ import annotations
+
+import time
+from typing import Annotated
+
+import typer
+
+from pin_metaik.collision import CollisionWorld
+from pin_metaik.notice import notice
+from pin_metaik.robots import load_robot
+
+
+def warm(
+    robot: Annotated[list[str] | None, typer.Option(help="Robots whose meshes are simplified, too.")] = None,
+) -> None:
+    """Compile every loop, and say what was done and how long it took. What is there already is left alone."""
+    from pin_metaik.compiled import ahead
+
+    robots = [load_robot(name) for name in robot or ()]
+    began = time.perf_counter()
+    loops, missing = ahead.versions()
+    todo = [loop for loop in loops if not loop.ready]
+    folder = ahead.folder_for(todo)
+    if todo:
+        with notice(f"compiling {len(todo)} loops, kept in {folder}", len(todo)) as line:
+            for _ in ahead.each(ahead.Version.compile, todo):
+                line.step()
+        print(f"compiled {len(todo)} of {len(loops)} loops in {time.perf_counter() - began:.1f} s, kept in {folder}")
+    else:
+        print(f"all {len(loops)} loops are there")
+    for why in missing:
+        print(f"left out: {why}")
+    for each in robots:
+        began = time.perf_counter()
+        CollisionWorld(each).checker  # noqa: B018  # made when first looked at
+        print(f"meshes of {each.name}: {time.perf_counter() - began:.1f} s")

@@ -1,0 +1,87 @@
+"""Compiling every loop before anybody waits for it, on all cores."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from importlib import import_module
+from multiprocessing import get_context
+from pathlib import Path
+
+from pin_metaik.compiled import LOOPS
+from pin_metaik.compiled.on_disk import kept_in
+from pin_metaik.compiled.sources import modules
+from pin_metaik.errors import CannotWrite, MissingExtra
+from pin_metaik.interrupts import deaf_children
+
+
+@dataclass(frozen=True)
+class Version:
+    """One of the functions that a loop is compiled into."""
+
+    module: str
+    name: str
+    without: bool
+    """Compiled for None in place of the argument that may be None."""
+
+    @property
+    def ready(self) -> bool:
+        """Whether its machine code can be read from somewhere."""
+        loop = LOOPS[self.module, self.name]
+        return loop.machine_code.has(loop.signatures[self.without])
+
+    def compile(self) -> None:
+        """Have its machine code in this process, and on disk where that can be."""
+        import_module(self.module)
+        LOOPS[self.module, self.name].compiled(self.without)
+
+    def ship(self, folder: Path) -> None:
+        """Have it written below a folder, for a wheel to carry."""
+        import_module(self.module)
+        LOOPS[self.module, self.name].ship(self.without, folder)
+
+
+def versions() -> tuple[list[Version], list[str]]:
+    """All of them, and what is missing because an optional dependency is, with how to install it."""
+    missing: dict[str, None] = {}
+    for module in modules():
+        try:
+            import_module(module)
+        except MissingExtra as error:
+            missing[str(error)] = None
+    return [Version(*at, without) for at, loop in LOOPS.items() for without in loop.signatures], list(missing)
+
+
+def folder_for(loops: list[Version]) -> Path | None:
+    """The folder, or the one above the folders, that their machine code is written to.
+
+    Raises:
+        CannotWrite: There is none for one of them.
+    """
+    folders = [kept_in(Path(str(sys.modules[loop.module].__file__))) for loop in loops]
+    if None in folders:
+        raise CannotWrite(
+            "machine code can be kept nowhere: neither beside the package nor in a cache folder; set NUMBA_CACHE_DIR "
+            "to a folder that can be written"
+        )
+    return Path(os.path.commonpath([str(folder) for folder in folders])) if folders else None
+
+
+def each(work: Callable[[Version], None], loops: list[Version]) -> Iterator[Version]:
+    """Do something to each in one of as many processes as there are cores; yields them as they are done."""
+    pool = ProcessPoolExecutor(min(_cores(), max(len(loops), 1)), mp_context=get_context("spawn"))
+    try:
+        with deaf_children():
+            waiting = {pool.submit(work, loop): loop for loop in loops}
+        for done in as_completed(waiting):
+            done.result()
+            yield waiting[done]
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
