@@ -22,8 +22,8 @@ Floats = NDArray[np.float64]
 def closed_form(paths: Paths, close: float = CLOSE) -> Floats:
     """The closed form (16, 3), or no rows (0, 3) for an arm of neither kind; ``kernel.layout`` names its rows.
 
-    ``close`` (m or rad) is how near to each other axes meet, or are parallel. In the configuration where all angles are
-    0, in the world frame unless said otherwise, the rows are:
+    ``close`` (m or rad) is how near axes meet, or are parallel. The rows, in the configuration where all angles are 0,
+    in the world frame unless said otherwise:
 
     * 0 to 5: the axes.
     * 6: a point O1 on axis 1; 7 to 10: the ways from there to O2, O3, O4 and O5, where the last axes meet; of a wrist

@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.kinematics.kernel.layout import ROUNDING
+from pin_metaik.kinematics.kernel.layout import O1, O5_TIP, ROUNDING
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.paths import Paths
 from pin_metaik.kinematics.proofs.deviation import deviation, ideal
@@ -135,7 +135,7 @@ class ClosedFormProof:
         """The proof for an arm's closed form, with how far the arm is from it."""
         exact = ideal(form)
         near, aligned = deviation(paths, exact)
-        size = float(np.linalg.norm(exact[6:12], axis=1).sum())
+        size = float(np.linalg.norm(exact[O1 : O5_TIP + 1], axis=1).sum())
         off = np.array([near + ROUNDING * (1.0 + size), aligned + ROUNDING])
         return ClosedFormProof(exact, paths.wiring, limits, off)
 
