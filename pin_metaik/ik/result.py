@@ -61,7 +61,7 @@ class IKResult:
             ``IN_COLLISION``, what proves that all solutions were looked at (see ``IKSolutions.complete``).
         resolution: Of a chain with more joints than the target needs, ``IN_COLLISION``: half width (rad or m) of boxes
             that cover all of its solutions, in each of which one was looked at; ``None``, if that was not done.
-        parts: Position and quaternion of a target that is a pose, in the place of a copy of it.
+        parts: A pose target as position and quaternion, which is cheaper than a copy of the SE3.
     """
 
     q: NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""All solutions of one target: the set a choice is made from."""
+"""All distinct solutions of one target."""
 
 from __future__ import annotations
 

@@ -117,7 +117,7 @@ def test_without_a_control_there_is_no_verdict_on_seeds() -> None:
 def test_winner_and_loser_are_named(results: Results) -> None:
     columns = table(winners(results), "winners")
     assert columns["winner"] == ["gwo+dls"] and columns["solved least"] == ["mtde+dls"]
-    assert columns["not to be told from it"] == ["nobody"]
+    assert columns["not significantly different"] == ["nobody"]
 
 
 def test_the_hardest_target_comes_first_with_the_command_to_see_it(results: Results) -> None:
