@@ -82,7 +82,7 @@ def test_methods_that_do_not_tell_what_they_spend_are_not_ranked(results: Result
     silent = [replace(t, evaluations=None) if t.method == "mtde+dls" else t for t in results.trials]
     quiet = Results(results.record, silent)
     assert quiet.counted == ["dls+restarts", "gwo+dls"]
-    assert "do not tell what they spend: mtde+dls" in " ".join(reading(quiet).text)
+    assert "do not report evaluations: mtde+dls" in " ".join(reading(quiet).text)
     assert table(overview(quiet), "overview")["mean rank"][-1] is None
 
 
