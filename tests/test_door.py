@@ -78,7 +78,7 @@ NONSENSE: dict[str, Callable[[mik.Robot, mik.Chain], Any]] = {
     "select: expected a text": lambda robot, chain: mik.IKSolver(select=lambda q: 0.0),
     r"obstacles: .* each entry an Obstacle": lambda robot, chain: mik.CollisionWorld(robot, [{"box": 1}]),
     r"budget: expected a Budget": lambda robot, chain: mik.minimize(np.sum, mik.Box([0], [1]), "mtde", 2000),
-    r"box: expected a Box \(e.g. Box\(lower, upper\)": lambda robot, chain: mik.minimize(
+    r"box: expected a Box \(e.g. mik.Box\(lower, upper\), the box of a search": lambda robot, chain: mik.minimize(
         np.sum, ([-5] * 2, [5] * 2), "mtde", BUDGET
     ),
     r"locked: .*write \['panda_joint3'\]": lambda robot, chain: mik.Chain(

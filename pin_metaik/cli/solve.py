@@ -144,17 +144,9 @@ def report(robot: str, chain: Chain, result: IKResult, in_degrees: bool) -> dict
     return {
         "robot": robot,
         "frame": chain.frames[0],
-        "status": str(result.status),
-        "success": result.success,
-        "why": result.why,
-        "proof": None if result.proof is None else str(result.proof),
+        **result.as_dict(),
         "q": _angles(chain, result, in_degrees),
         "joints": dict(zip(chain.names, _shown(chain, result.x, in_degrees), strict=True)),
-        "position_error": result.position_error,
-        "orientation_error": result.orientation_error,
-        "collisions": [contact._asdict() for contact in result.contacts],
-        "evaluations": result.evaluations,
-        "seconds": result.seconds,
     }
 
 

@@ -18,7 +18,7 @@ from pin_metaik.notice import notice
 
 SEED = 20_261_125
 SAMPLES = 500
-ALWAYS = 0.95  # of the samples: links that touch so often are made so
+ALWAYS = 0.95  # of the samples: links that touch so often count as touching by construction
 CONTACT = 1e-6  # m; what is nearer touches, up to rounding
 ENOUGH = 100  # samples of the meshes, for links whose hulls always touch
 STARTS = 4  # of the descents in distance, where samples came nearest

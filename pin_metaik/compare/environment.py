@@ -25,7 +25,7 @@ PACKAGES = (
 
 
 def environment(command: str) -> dict[str, Any]:
-    """What is to be known of this process, as plain values."""
+    """Versions, processor and command of this process, as plain values."""
     return {
         "date": datetime.now().astimezone().isoformat(timespec="seconds"),
         "command": command,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from pin_metaik.compare.record import CaseRecord, Record
 from pin_metaik.compare.statistics import Pair, compare_all, wilson
 from pin_metaik.compare.trial import Trial
 from pin_metaik.ik import IKStatus
+from pin_metaik.plain import fields_of
 
 PENALTY = 10.0  # an unsolved trial costs this many times what was allowed ("PAR10")
 
@@ -37,6 +39,11 @@ class Summary:
     seconds: tuple[float, float] | None
     false_claims: int
     errors: int
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON."""
+        names = ("trials", "solved", "rate", "interval", "evaluations", "seconds", "false_claims", "errors")
+        return fields_of(self, *names)
 
     @property
     def rate(self) -> float:

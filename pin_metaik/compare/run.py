@@ -6,6 +6,7 @@ from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 from pin_metaik.arguments import checked
 from pin_metaik.compare import environment
@@ -20,6 +21,7 @@ from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import Pressed
 from pin_metaik.optimize.settings import one_of
 from pin_metaik.output import writable
+from pin_metaik.plain import fields_of
 from pin_metaik.watching import Progress, Watch, ended, tell
 
 MOST_JOBS = 10_000
@@ -48,6 +50,11 @@ class Outcome:
     seconds: float
     absent: tuple[str, ...] = ()
     error: str = ""
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON."""
+        names = ("folder", "done", "planned", "partial", "fresh", "errors", "seconds", "absent", "error")
+        return fields_of(self, *names)
 
     @property
     def partial(self) -> bool:

@@ -20,7 +20,7 @@ from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik import IKProblem
 
 CURVE = np.geomspace(0.005, 1.0, 32)  # shares of the budget at which a row keeps the best cost so far
-TIMES = ("seconds",)  # what no two runs have in common
+TIMES = ("seconds",)  # fields that differ between runs
 
 
 @dataclass(frozen=True)

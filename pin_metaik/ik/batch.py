@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
-from typing import TypeAlias, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 import pinocchio as pin
@@ -26,6 +26,7 @@ from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import RESTARTS, Chain
 from pin_metaik.kinematics.kernel.layout import ANGLE, DISTANCE, WITHOUT_BRANCH
 from pin_metaik.optimize.settings import whole
+from pin_metaik.plain import fields_of, plain
 from pin_metaik.randomness import Rng, as_seed
 from pin_metaik.watching import Count, Stopped, Watch
 
@@ -75,6 +76,11 @@ class IKBatch:
     def __getstate__(self) -> dict[str, object]:
         """Pickle without the world: kilobytes rather than megabytes."""
         return {**self.__dict__, "world": None}
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON, lists of one a target: lengths in m, angles in rad."""
+        names = ("q", "success", "status", "proof", "position_error", "orientation_error", "evaluations", "seconds")
+        return {**fields_of(self, *names), "collisions": plain(self.contacts)}
 
     def __getitem__(self, i: int) -> IKResult:
         return IKResult(

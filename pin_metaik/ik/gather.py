@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.dls import DLS, PROGRESS
 
-VAIN = 60  # starts in a row that led to nothing new ...
+VAIN = 60  # consecutive starts without a new solution ...
 VAIN_EACH = 15  # ... and as many more for each solution known, before a search for others ends
 SETTINGS = DLS()
 

@@ -1,4 +1,4 @@
-"""The books of one search: what was spent, the best so far, and why it ended."""
+"""The state of one search: budget spent, best so far, reason for stopping."""
 
 from __future__ import annotations
 

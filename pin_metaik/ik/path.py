@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +23,7 @@ from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
+from pin_metaik.plain import fields_of
 from pin_metaik.randomness import Rng
 from pin_metaik.watching import Progress, Stopped, Watch, tell
 
@@ -61,6 +63,10 @@ class IKPath:
     def __bool__(self) -> bool:
         """Whether it is continuous."""
         return self.continuous
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON: lengths in m, angles in rad."""
+        return fields_of(self, "q", "success", "continuous", "breaks", "longest_step", "interrupted", "seconds")
 
     @property
     def x(self) -> NDArray[np.float64]:

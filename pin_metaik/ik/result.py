@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
-from typing import TypeAlias, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 import pinocchio as pin
@@ -18,6 +18,7 @@ from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.reasons import cannot_move, collisions, in_collision, out_of_reach
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
+from pin_metaik.plain import fields_of, plain
 
 Parts: TypeAlias = tuple[tuple[float, float, float], tuple[float, float, float, float]]
 
@@ -60,7 +61,7 @@ class IKResult:
             ``IN_COLLISION``, what proves that all solutions were looked at (see ``IKSolutions.complete``).
         resolution: Of a chain with more joints than the target needs, ``IN_COLLISION``: half width (rad or m) of boxes
             that cover all of its solutions, in each of which one was looked at; ``None``, if that was not done.
-        parts: Position and quaternion of a target that is a pose, in the place of a copy of it.
+        parts: A pose target as position and quaternion, which is cheaper than a copy of the SE3.
     """
 
     q: NDArray[np.float64]
@@ -147,6 +148,26 @@ class IKResult:
         Without its world, after it was pickled, what collided still counts.
         """
         return self.problem.accepts(self.q) and not (self.world is None and self.contacts)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON, in m and rad; q is whole, ``joints`` are the chain's coordinates by name."""
+        names = (
+            "status",
+            "success",
+            "why",
+            "q",
+            "position_error",
+            "orientation_error",
+            "proof",
+            "evaluations",
+            "seconds",
+        )
+        return {
+            "frames": list(self.chain.frames),
+            **fields_of(self, *names),
+            "joints": dict(zip(self.chain.names, self.x.tolist(), strict=True)),
+            "collisions": plain(self.contacts),
+        }
 
     def __getstate__(self) -> dict[str, object]:
         """Pickle without the world: kilobytes rather than megabytes."""

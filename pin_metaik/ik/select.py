@@ -1,4 +1,4 @@
-"""Which of several solutions to choose: a measure for each wish, smaller is better."""
+"""Criteria for choosing among solutions; lower is better."""
 
 from __future__ import annotations
 

@@ -42,8 +42,8 @@ class Helper(Thread):
 def share_out(work: Callable[[T], None], parts: Iterable[T], workers: int) -> None:
     """Do the work for all parts, this thread and others each taking the next part when they are free.
 
-    Others only help: a thread that waited for their results would be woken for each, and each time take the interpreter
-    from them. Ctrl-C reaches the main thread only, which stops the others; what any of them raises ends the work, too.
+    The calling thread works, too, instead of waiting: waking it for every result would contend for the interpreter.
+    Ctrl-C reaches the main thread only, which stops the others; what any of them raises ends the work, too.
     """
     waiting = iter(list(parts))  # of a list, threads may take from it without a lock
 

@@ -1,10 +1,11 @@
-"""All solutions of one target: the set a choice is made from."""
+"""All distinct solutions of one target."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +20,7 @@ from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Budget
 from pin_metaik.optimize.settings import few, positive
+from pin_metaik.plain import fields_of
 from pin_metaik.randomness import Rng
 from pin_metaik.watching import Stopped, Watch
 
@@ -56,6 +58,10 @@ class IKSolutions:
     def x(self) -> NDArray[np.float64]:
         """(s, n) the chain's coordinates."""
         return self.problem.chain.x(self.q)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON: lengths in m, angles in rad."""
+        return fields_of(self, "q", "complete", "interrupted", "evaluations", "seconds")
 
     def __len__(self) -> int:
         return len(self.q)

@@ -159,7 +159,7 @@ class IKSolver:
     ) -> None:
         """Collect distinct solutions and take the best by the chosen measure; on a redundant chain, improve it.
 
-        In a world only those count that are free of collisions, and what would improve one into a collision is left.
+        In a world, colliding solutions are discarded, and so is a null-space improvement that collides.
         """
         measure = SELECT[self.select]
         budget = Budget(evaluations=max(1, ledger.left(CHOICE_SHARE)), seconds=self.budget.seconds)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +13,7 @@ from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.learn.tables import as_table
+from pin_metaik.plain import fields_of
 from pin_metaik.randomness import as_generator
 from pin_metaik.watching import Progress, Watch, ended, tell
 
@@ -27,13 +29,17 @@ class Clusters:
         centres: (c, d).
         objective: J after each iteration (i,), never rising; computed with the centres the iteration began with.
         converged: Whether the centres came to rest within the iterations allowed.
-        interrupted: Whether Ctrl-C ended it.
+        interrupted: Whether Ctrl-C or a watch ended it.
     """
 
     centres: Array
     objective: Array
     converged: bool
     interrupted: bool = False
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON."""
+        return fields_of(self, "centres", "objective", "converged", "interrupted")
 
 
 @checked

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +16,7 @@ from pin_metaik.optimize.asktell import AskTell, Status
 from pin_metaik.optimize.budget import Budget
 from pin_metaik.optimize.search import Metaheuristic
 from pin_metaik.optimize.space import Box
+from pin_metaik.plain import fields_of
 from pin_metaik.watching import Progress, Watch, ended, tell
 
 
@@ -43,6 +45,11 @@ class Result:
     trace: Array | None
     elite: Array
     elite_costs: Array
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON; None where a cost is not finite."""
+        names = ("x", "cost", "status", "evaluations", "generations", "seconds", "trace", "elite", "elite_costs")
+        return fields_of(self, *names)
 
 
 @checked

@@ -90,8 +90,7 @@ def design(
     if picture is not None and workspace is not None:
         stewart.save_picture(stewart.draw(found.mechanism, workspace), picture)
     if as_json:
-        score = None if found.score is None else vars(found.score)
-        report = {"success": found.success, "ended": found.search.status.value, "score": score}
+        report = found.as_dict()
         report["workspace"] = None if workspace is None else values(found.mechanism, workspace)
         report["mechanism"] = stewart.to_toml(found.mechanism) if found.success else None
         print_json(report)

@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
 import typer
 from rich.console import Console
 from rich.table import Table
@@ -47,7 +46,7 @@ def types(
         for one in found:
             if one.designed.success:
                 stewart.save_mechanism(one.designed.mechanism, output / f"{one.type}.toml")
-    rows = [_row(one) for one in found]
+    rows = [one.as_dict() for one in found]
     if as_json:
         print_json({"types": rows})
     else:
@@ -55,19 +54,6 @@ def types(
     if any(one.designed.interrupted for one in found):
         raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if all(one.designed.success for one in found) else 1)
-
-
-def _row(one: stewart.TypeDesign) -> dict[str, object]:
-    score, geometry = one.designed.score, one.designed.mechanism.geometry
-    return {
-        "type": one.type,
-        "fitness": None if score is None else score.fitness,
-        "runs": [None if np.isnan(run) else run for run in one.runs],
-        "dexterity": None if score is None else score.dexterity,
-        "workspace": None if score is None else score.workspace,
-        "base_radius": geometry.base_radius,
-        "platform_radius": geometry.platform_radius,
-    }
 
 
 def _show(rows: list[dict[str, object]]) -> None:

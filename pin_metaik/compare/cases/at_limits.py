@@ -1,4 +1,4 @@
-"""Exactly at the limits: half of the joints have not a hair to give."""
+"""Exactly at the limits: half of the joints are at one of theirs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Random: what an arm meets on an ordinary day."""
+"""Random: poses of uniformly random configurations."""
 
 from __future__ import annotations
 

@@ -108,14 +108,14 @@ def winners(results: Results) -> Section:
         Column("case"),
         Column("robot"),
         Column("winner"),
-        Column("it solved", ".1%"),
-        Column("not to be told from it"),
+        Column("winner's rate", ".1%"),
+        Column("not significantly different"),
         Column("solved least"),
-        Column("they solved", ".1%"),
+        Column("their rate", ".1%"),
     )
     text = (
-        "The winner has the best mean rank by evaluations to solution. Not to be told from it: those that differ from "
-        "it with p >= 0.05 in Wilcoxon's signed-rank test, by Holm for all methods at once.",
+        "The winner has the best mean rank by evaluations to solution. Not significantly different: methods that "
+        "differ from it with p >= 0.05 in Wilcoxon's signed-rank test, by Holm for all methods at once.",
     )
     return Section("Winners and losers", text, (Table("winners", "By case and robot", columns, rows),))
 
@@ -131,8 +131,8 @@ def reading(results: Results) -> Section:
     text: tuple[str, ...] = (
         sizes,
         f"Every trial may spend {record.budget:,} kernel evaluations on a target: forward kinematics count 1, forward "
-        f"kinematics with a Jacobian {FK_WITH_JACOBIAN:g}, as measured. Who spends more has not solved it. All methods "
-        "get the same targets and, in the same repetition, the same start.",
+        f"kinematics with a Jacobian {FK_WITH_JACOBIAN:g}, as measured. Trials over budget count as unsolved. "
+        "All methods get the same targets and, in the same repetition, the same start.",
         "`lm` is Levenberg-Marquardt (Chan) from the given start alone, `lm+restarts` goes on from random ones; `dls` "
         "is the compiled damped least squares with limits inside the step, `qp` a quadratic program a step. `gwo` is a "
         "metaheuristic alone, `gwo+dls` lets it find starts (a quarter of what is left of the budget, then its eight "
@@ -140,7 +140,7 @@ def reading(results: Results) -> Section:
     )
     silent = [method for method in results.methods if method not in results.counted]
     if silent:
-        text += (f"Not ranked, as they do not tell what they spend: {', '.join(silent)}.",)
+        text += (f"Not ranked, because they do not report evaluations: {', '.join(silent)}.",)
     text += tuple(f"Not compared: {pair}: {reason}." for pair, reason in record.absent.items())
     if len(results.trials) < record.trials:
         text += (f"PARTIAL: {len(results.trials):,} of {record.trials:,} trials are done.",)

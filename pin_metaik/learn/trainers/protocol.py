@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
 from pin_metaik.arrays import Array
 from pin_metaik.learn.network import Network
+from pin_metaik.plain import fields_of
 from pin_metaik.watching import Progress, Watch, tell
 
 
@@ -93,6 +94,10 @@ class Training:
     converged: bool
     interrupted: bool
     trace: np.ndarray
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON."""
+        return fields_of(self, "w", "mse", "iterations", "seconds", "converged", "interrupted", "trace")
 
 
 @runtime_checkable

@@ -31,7 +31,7 @@ DesignName = Literal["paper", "log"]
 
 @dataclass(frozen=True)
 class Design:
-    """What a network sees of a turn, and what it says.
+    """Input and output transformations of the network.
 
     Attributes:
         inputs: From speeds (n,) and angles (n,) to inputs (n, 2).

@@ -1,4 +1,4 @@
-"""Golden-section search: the minimum of a function of one variable that has one."""
+"""Golden-section search: the minimum of a unimodal function of one variable."""
 
 from __future__ import annotations
 

@@ -28,20 +28,11 @@ def values(mechanism: Mechanism, workspace: Workspace) -> dict[str, Any]:
     return {
         "name": mechanism.name,
         "type": mechanism.geometry.type,
-        "verdict": str(workspace.verdict),
         "notes": notes(mechanism, workspace),
-        "complete": workspace.complete,
-        "volume": workspace.volume,
-        "volume_in_every_orientation": workspace.volume_of_all,
-        "cells_reached": workspace.cells_reached,
-        "share_reached": float(workspace.reached.mean()),
-        "gdi": workspace.gdi,
-        "norm": mechanism.dexterity.norm,
-        "characteristic_length": workspace.length,
+        **workspace.as_dict(),
         "lowest_nu": found.nu,
         "singular_poses": len(found.poses),
         "sign_changes": len(found.crossings),
-        "poses": {state.name.lower(): count for state, count in workspace.counts.items()},
     }
 
 

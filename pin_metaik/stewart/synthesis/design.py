@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
 from pin_metaik.interrupts import wrapped
 from pin_metaik.optimize import Budget, Result, Status, minimize
+from pin_metaik.plain import plain
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.synthesis.fitness import UNUSABLE, Fitness, Score, task_of
 from pin_metaik.watching import Watch
@@ -47,6 +49,11 @@ class Designed:
         """Designs looked at and best fitness after each generation (g, 2); below 0 while none was feasible."""
         assert self.search.trace is not None
         return self.search.trace * [1.0, -1.0]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON: how the search ended and what the best design scores, in m and rad."""
+        score = None if self.score is None else plain(vars(self.score))
+        return {"success": self.success, "ended": self.search.status.value, "score": score}
 
     def __str__(self) -> str:
         found = f"fitness {self.score.fitness:.4f}" if self.score else "no feasible design"

@@ -14,6 +14,7 @@ from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.interrupts import kept
 from pin_metaik.optimize.settings import few
+from pin_metaik.plain import fields_of
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
 from pin_metaik.stewart.mechanism.ranges import SIDES, Ranges
 from pin_metaik.stewart.mechanism.task import DesignTask
@@ -45,6 +46,16 @@ class TypeDesign:
     type: str
     designed: Designed
     runs: tuple[float, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON: lengths in m."""
+        score, geometry = self.designed.score, self.designed.mechanism.geometry
+        names = ("fitness", "dexterity", "workspace")
+        return {
+            **fields_of(self, "type", "runs"),
+            **(dict.fromkeys(names) if score is None else fields_of(score, *names)),
+            **fields_of(geometry, "base_radius", "platform_radius"),
+        }
 
 
 @checked

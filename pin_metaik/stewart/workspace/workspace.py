@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry, InvalidSetting
+from pin_metaik.plain import fields_of
 from pin_metaik.stewart.kinematics.conditioning import Dexterity
 from pin_metaik.stewart.platform.geometry import MOST_LEGS, Geometry
 from pin_metaik.stewart.platform.limits import Limits
@@ -76,6 +78,19 @@ class Workspace:
     length: float
     states: NDArray[np.int8]
     nu: Array
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON: the indices in m and rad; ``gdi`` is None for a singular mechanism."""
+        return {
+            **fields_of(self, "verdict", "complete", "volume"),
+            "volume_in_every_orientation": self.volume_of_all,
+            "cells_reached": self.cells_reached,
+            "share_reached": float(self.reached.mean()),
+            "gdi": self.gdi,
+            "norm": self.dexterity.norm,
+            "characteristic_length": self.length,
+            "poses": {state.name.lower(): count for state, count in self.counts.items()},
+        }
 
     @property
     def complete(self) -> bool:
