@@ -24,7 +24,7 @@ from pin_metaik.mobile.curves.shortest import shortest_words
 
 Row = list[object]
 
-SHARES = np.linspace(0.1, 0.9, 9)  # of a wheel's speed for driving on, where omega is scaled down
+SHARES = (0.2, 0.4, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95, 0.98)  # of a wheel's speed, for driving on
 BOTS = (mobile.TURTLEBOT3_BURGER, mobile.TURTLEBOT3_WAFFLE)
 BENDS = {"L": 1, "S": 0, "R": -1}
 
@@ -136,8 +136,8 @@ def again(count: int) -> Iterator[str]:
         )
     yield "\n\n## Planning again in motion\n"
     yield (
-        "A plan stopped at four times and planned again from there in the same world, with one path: the largest jump of "
-        "position, heading, speed or turning rate; by how much the whole takes longer, percent; ms to plan.\n"
+        "A plan stopped at four times and planned again from there in the same world, with one path: the largest jump "
+        "of position, heading, speed or turning rate; by how much the whole takes longer, percent; ms to plan.\n"
     )
     heading = ["robot", "plans", "none found", "largest jump", "longer by, least", "median", "most", "ms, median"]
     yield table(heading, rows)
