@@ -26,9 +26,7 @@ def replanned(axes) -> None:
     wheels = robot.wheels(motion.v, motion.omega)
     print(f"planned again at {now.v:.2f} m/s: {after}")
     slowest = motion.v[motion.t < motion.t[-1] - 1].min()  # before it brakes at the goal
-    print(
-        f"wheels reach {np.abs(wheels).max():.3f} of {robot.wheel_speed} m/s; the robot never stops: {slowest:.2f} m/s"
-    )
+    print(f"wheels reach {np.abs(wheels).max():.3f} of {robot.wheel_speed} m/s; the slowest speed is {slowest:.2f} m/s")
 
     draw_scene(axes[0], scene)
     axes[0].plot(*before.trajectory.sample().xy.T, "--", color=GREY)
@@ -55,9 +53,7 @@ def parked(axes) -> None:
         back = mobile.shortest_curve(past.end, goal, TURNING_RADIUS, reverse=True)
         if not any(mobile.first_contact(curve, CAR, row) for curve in (past, back)):
             break
-    print(
-        f"after {ahead} m straight on, {back.word}, {back.length:.1f} m with {len(back.cusps)} cusps: free, for certain"
-    )
+    print(f"after {ahead} m straight on, {back.word}, {back.length:.1f} m, {len(back.cusps)} cusps: free, for certain")
     for curve, colour, way in ((shortest, GREY, "--"), (past, BLUE, "-"), (back, BLUE, "-")):
         axes.plot(*curve.poses(curve.places()).T[:2], way, color=colour)
     for outline, colour in ((CAR.at(back.poses(np.linspace(0, back.length, 9))), GREEN), (row, EDGE)):
