@@ -219,7 +219,7 @@ def complete(options: argparse.Namespace) -> list[str]:
             times.append(1e3 * (time.process_time() - began))
             X = arm.descend(rng.uniform(arm.lower, arm.upper, (DESCENTS, chain.n)), pose, np.ones(chain.n, bool), 1e-9)
             new = _apart(X, found.x)
-            others, have, certain = others + len(X), have + len(found), certain + found.complete
+            others, have, certain = others + len(X), have + len(found), certain + (found.complete is not None)
             outside += int(new.sum()) if found.complete else 0
         ms = np.array(times)
         lines.append(

@@ -147,6 +147,7 @@ def report(robot: str, chain: Chain, result: IKResult, in_degrees: bool) -> dict
         "status": str(result.status),
         "success": result.success,
         "why": result.why,
+        "proof": None if result.proof is None else str(result.proof),
         "q": _angles(chain, result, in_degrees),
         "joints": dict(zip(chain.names, _shown(chain, result.x, in_degrees), strict=True)),
         "position_error": result.position_error,

@@ -26,6 +26,7 @@ APART = 0.05  # rad or m between solutions; what is nearer collides alike
 OTHERS = 16  # starts of a redundant chain before any solution is pushed
 FINE = 0.1  # rad or m, half width of the boxes of its solutions that are looked at
 KEPT, COVER = 4_096, 20_000  # of such boxes at most, and of all that are looked at for them
+SHALLOW = 0.02  # m; deeper ones are not pushed where all solutions were looked at
 PUSHED = 4  # of the solutions found, those pushed in each round: the least deep
 SEEDING = 0.02  # of what is left, for a metaheuristic in each round
 ROUND = 256  # further starts in each round
@@ -67,7 +68,7 @@ class ClearSearch:
             return self.every()
         starts = self.starts()
         free = self.others(islice(starts, OTHERS))
-        for means in chain(("push", "cover"), cycle(("others", "push", "seed"))):
+        for means in chain(("cover",), cycle(("push", "others", "seed"))):
             if free is not None or self.ledger.over() or self.complete:
                 break
             match means:
@@ -104,7 +105,7 @@ class ClearSearch:
         free = self.others(kept[:, : self.problem.chain.n])
         if free is None and not self.ledger.over():
             self.resolution, self.complete = FINE, True
-            free = self.push()
+            free = self.push(SHALLOW)
         return free
 
     def least_deep(self) -> NDArray[np.float64]:
@@ -150,9 +151,10 @@ class ClearSearch:
                 return refined.x
         return None
 
-    def push(self) -> NDArray[np.float64] | None:
-        """Push the least deep of the solutions that have not been pushed yet out of collision."""
-        chosen = [i for i in self._by_depth() if i not in self._pushed][:PUSHED]
+    def push(self, deepest: float = np.inf) -> NDArray[np.float64] | None:
+        """Push the least deep of the solutions not pushed yet out of collision, none deeper than ``deepest`` (m)."""
+        least = [i for i in self._by_depth() if i not in self._pushed and self._depths[i] <= deepest]
+        chosen = least[:PUSHED]
         self._pushed.update(chosen)
         return self._pushed_out(self.found[chosen])
 

@@ -107,10 +107,11 @@ class Collection:
         assert proof is not None
         exact = proof.judge(problem.targets[0].pose.homogeneous, 0.0, 0.0).boxes
         starts = problem.branches(self._x0)
-        if any(singular_values(problem.linearize(x)[1])[-1] < SINGULAR for x in starts):
+        hidden = (exact[:, n:] > 0.5 * self._apart).any()  # by rounding, so near to a singularity: how many there are
+        if hidden and any(singular_values(problem.linearize(x)[1])[-1] < SINGULAR for x in starts):
             return False
         self._descend(starts, len(starts) + 1, branch=False)
-        if (exact[:, n:] > 0.5 * self._apart).any():  # so near to a singularity that rounding hides how many they are
+        if hidden:
             return self.known > 0
         boxes = exact if len(exact) else whole
         missing = boxes[~self._has_solution(boxes)]

@@ -12,6 +12,7 @@ FIRST = 500  # evaluations before the first boxes; fewer than 1 of 10,000 random
 FAR = 3e-3  # m and rad: where the nearest is farther away by then, there is mostly nothing to be found
 HEAD, TAIL = 400, 7_000  # evaluations for which no box is looked at, where the nearest is far and where it is near
 LONG, TIMES = 3_000, 10  # evaluations after which, where it is far, boxes are looked at ten at a time
+LAST = 50_000  # boxes of a frame, where the nearest is far
 MANY, FEW = 9, 3_000  # joints of a frame from which on more boxes prove next to nothing: of talos' nine 2 of 18
 CHUNK = 1_000  # boxes between two looks at the clock, where Ctrl-C is heard, too
 STARTS = 8  # boxes too small to be split, at a time, that are descended from
@@ -40,7 +41,8 @@ class Exclusion:
     def finish(self, ledger: Ledger) -> None:
         """Look at all boxes that the budget has left, when the search has come to its end."""
         for boxes in self._boxes:
-            self._look(boxes, ledger.left_for_boxes, ledger)
+            most = ledger.left_for_boxes if ledger.cost < FAR else LAST - boxes.looked
+            self._look(boxes, most, ledger)
 
     def _due(self, ledger: Ledger) -> int:
         """How many boxes of a frame may have been looked at by now."""

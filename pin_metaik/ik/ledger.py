@@ -74,9 +74,9 @@ class Ledger:
 
     @property
     def left_for_boxes(self) -> int:
-        """Boxes that may still be looked at: two thirds of the budget at most."""
+        """Boxes that may still be looked at: nine tenths of the budget at most."""
         total = self._budget.evaluations
-        return ENDLESS if total is None else max(0, min(2 * total // 3 - self._boxes, total - self.spent))
+        return ENDLESS if total is None else max(0, min(9 * total // 10 - self._boxes, total - self.spent))
 
     @property
     def decided(self) -> bool:

@@ -177,13 +177,18 @@ class IKProblem:
     @property
     def refuted(self) -> Proof | None:
         """What proves, by the limits, the links or the arm's closed form, that nothing meets the targets."""
-        formed = self.form_branches if self.proof is None else None
-        return Proof.CLOSED_FORM if formed is not None and formed.proved else self.proof
+        nominal = self.nominal_branches if self.proof is None else None
+        return Proof.CLOSED_FORM if nominal is not None and nominal.proved else self.proof
 
     @cached_property
     def form_branches(self) -> Branches | None:
         """The branches of the arm's closed form for all that the target of its whole pose accepts; None without one."""
-        proof, target = self.chain.form_proof, self.targets[0]
+        return self.nominal_branches if len(self.chain.form) else None
+
+    @cached_property
+    def nominal_branches(self) -> Branches | None:
+        """The same of an arm that nearly has a closed form, with how far it is from it as a tolerance more."""
+        proof, target = self.chain.nominal_proof, self.targets[0]
         if proof is None or not all(target.counts):
             return None
         return proof.judge(target.pose.homogeneous, *target.allowance)
@@ -202,7 +207,9 @@ class IKProblem:
         free = not target.counts[3], not target.counts[4], not target.counts[5]
         if near == math.inf and sum(free) > 1:
             return None
-        return self.chain._boxes(t, target.pose.homogeneous, near, target.tilt, free, least=least, split=split)
+        begin = None if self.nominal_branches is None else self.nominal_branches.pieces
+        how = near, target.tilt, free
+        return self.chain._boxes(t, target.pose.homogeneous, *how, least=least, split=split, begin=begin)
 
     def near(self, count: int) -> NDArray[np.float64]:
         """Sampled coordinates (count, n) of the chain's atlas with the poses nearest to the targets, nearest first."""

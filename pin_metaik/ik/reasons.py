@@ -22,7 +22,7 @@ def out_of_reach(problem: IKProblem, nearest: str) -> str:
         return f"out of reach: {cannot_move(problem)}"
     if problem.gap > 0.0:
         return too_far(problem)
-    formed = problem.form_branches
+    formed = problem.nominal_branches
     if formed is not None and formed.proved:
         return f"out of reach: {formed.why()}; {nearest}"
     return f"out of reach: every box of configurations inside the limits is excluded; {nearest}"

@@ -44,7 +44,10 @@ def solve_ik(
             answer. A generator gives one number as the seed: it is one draw on, however hard the target is.
 
     Returns:
-        The result: check ``result.success``. A target out of reach is a result too, with the nearest pose found.
+        The result: check ``result.success``. A target out of reach is a result too, with the nearest pose found:
+        ``UNREACHABLE`` is proved (``result.proof``), for whole poses, positions, orientations and free axes, mimic
+        joints and several frames, each by itself. Nothing is proved of slides without limits, and little of nine joints
+        and more, or within some ten tolerances of what is reachable.
 
     Raises:
         InvalidTarget: If the target is not a pose, position or orientation.

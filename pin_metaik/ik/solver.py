@@ -32,7 +32,7 @@ from pin_metaik.randomness import DEFAULT_SEED, Rng, as_generator
 
 Refine: TypeAlias = Callable[[IKProblem, NDArray[np.float64], int], Refinement]
 
-EVALUATIONS = 75_000  # of a search and its boxes, by default
+EVALUATIONS = 250_000  # of a search and its boxes, by default
 ELITE = 8  # points of a seeder's search that are refined
 SEEDER_SHARE = 0.25  # of the budget, for one round of the seeder before its elite is refined
 RESTART_SHARE = 0.8  # of a search, for restarts before the automatic solver turns to a seeder
@@ -46,21 +46,23 @@ RESERVE = 0.05  # of the budget, to settle down at the nearest pose when none is
 class IKSolver:
     """How to search: where starts come from, what refines them, and how much may be spent.
 
-    ``IKSolver()`` is what to use without thinking: damped least squares from ``q0`` and then from random starts, and
-    metaheuristic seeds when half of the budget has not solved it. ``IKSolver(seeder=None, starts=1)`` is the classical
+    ``IKSolver()`` is what to use without thinking: damped least squares from ``q0`` and then from random starts, by
+    turns with boxes that prove that there is nothing to be found, and in the end metaheuristic seeds. Others prove
+    nothing but what the links' span does. ``IKSolver(seeder=None, starts=1)`` is the classical
     Jacobian method, ``IKSolver("gwo", None)`` the pure metaheuristic, ``IKSolver("gwo", "dls")`` the hybrid.
 
     Attributes:
         seeder: ``"auto"``, a metaheuristic's name or object, or ``None``: ``q0`` and random starts only.
         refiner: A refiner's name or object, or ``None``: the seeder's best is the answer.
         budget: Evaluations are forward kinematics, one a configuration (a refiner's step is one, its Jacobian comes
-            with it). A budget in seconds is looked at every few milliseconds, and not reproducible. ``target`` is the
-            cost at which a pure metaheuristic stops; by default it stops once the tolerances are met.
+            with it), and boxes of configurations, which take about as long. A budget in seconds is looked at every few
+            milliseconds, and not reproducible. ``target`` is the cost at which a pure metaheuristic stops; by default
+            it stops once the tolerances are met.
         starts: How many starts to refine without a seeder; ``None``: until the budget is spent.
         select: ``"first"`` solution found, or of all distinct ones that the budget allows to find, the ``"nearest"`` to
             ``q0``, the one of best ``"manipulability"``, or the one that keeps farthest from the ``"limits"``.
         trace: Whether to keep the seeder's convergence.
-        patience: Evaluations after which the automatic search ends although nothing is proved, or a third of the
+        patience: Evaluations after which the automatic search ends although nothing is proved, or a tenth of the
             budget, if that is more; the rest of the budget is for boxes (see ``Proof``). Of 13.7 million targets with a
             solution none needed more than 25,000; 3,000 miss 1 of 2,500,000 random ones, and 2 of 10,000 singular ones.
     """
@@ -183,7 +185,7 @@ class IKSolver:
     def _most(self) -> int | None:
         """Evaluations that a search with boxes by turns may take."""
         total = self.budget.evaluations
-        return None if total is None else max(self.patience, total // 3)
+        return None if total is None else max(self.patience, total // 10)
 
     @cached_property
     def lane(self) -> NDArray[np.float64] | None:

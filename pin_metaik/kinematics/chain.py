@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import array, checked, shown
 from pin_metaik.errors import FixedFrame, InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.kinematics.atlas import LEAF, SEED, Atlas, chart
-from pin_metaik.kinematics.closed_form import closed_form
+from pin_metaik.kinematics.closed_form import NOMINAL, closed_form
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.model import (
     HasModel,
@@ -296,6 +296,14 @@ class Chain:
         """What decides by the arm's closed form whether it reaches a pose; None, if it has none."""
         return ClosedFormProof.of(self.form, self.paths, self.limits) if len(self.form) else None
 
+    @cached_property
+    def nominal_proof(self) -> ClosedFormProof | None:
+        """The same by the closed form that an arm would have whose joints were not off their place by a little."""
+        if len(self.form):
+            return self.form_proof
+        nominal = closed_form(self.paths, NOMINAL)
+        return ClosedFormProof.of(nominal, self.paths, self.limits) if len(nominal) else None
+
     def _boxes(
         self,
         tip: int,
@@ -306,6 +314,7 @@ class Chain:
         *,
         least: float = TINY,
         split: bool = False,
+        begin: NDArray[np.float64] | None = None,
     ) -> Boxes | None:
         """All configurations inside the limits, to be excluded for a target; None, where they have no bounds.
 
@@ -317,14 +326,15 @@ class Chain:
             free: Which turns about the frame's own axes x, y and z are free.
             least: Half width (rad or m) below which a box is kept instead of split.
             split: Whether the joints of a wrist are split, too; without, only the others of what is kept are short.
+            begin: (b, 2 n) centres and half widths of boxes outside of which there is known to be no solution.
         """
         if self._moves is not None:
             moved = np.linalg.inv(self._moves[tip]) @ pose
-            return self._original._boxes(tip, moved, near, aligned, free, least=least, split=split)
+            return self._original._boxes(tip, moved, near, aligned, free, least=least, split=split, begin=begin)
         if (tip, free) not in self._proof_arms:
             self._proof_arms[tip, free] = proof_arm(self.paths, self.limits, tip, free)
         arm = self._proof_arms[tip, free]
-        return None if arm is None else Boxes(arm.split if split else arm, pose, near, aligned, least)
+        return None if arm is None else Boxes(arm.split if split else arm, pose, near, aligned, least, begin)
 
     def branches(self, pose: NDArray[np.float64], x0: NDArray[np.float64]) -> NDArray[np.float64]:
         """Coordinates (b, n) that an arm's closed form has for a pose (4, 4), the branch that x0 (n,) is on first.

@@ -13,15 +13,18 @@ from numpy.typing import NDArray
 from pin_metaik.kinematics.paths import Paths, matrix_of
 
 CLOSE = 1e-6  # m or rad: axes this near to each other meet, or are parallel; what that leaves, a descent takes away
+NOMINAL = 5e-3  # ... of an arm that was measured: its closed form no longer solves, but still proves
 DONE, DESCEND, SEARCH = 0, 1, 2  # what is left to do: nothing, from a branch that is nearly there, or from anywhere
 
 Floats = NDArray[np.float64]
 
 
-def closed_form(paths: Paths) -> Floats:
+def closed_form(paths: Paths, close: float = CLOSE) -> Floats:
     """What ``branches`` takes (16, 3), or no rows (0, 3) for an arm of neither kind.
 
     In the configuration where all angles are 0, in the world frame unless said otherwise:
+
+    ``close`` (m or rad) is how near axes meet, or are parallel. Rows:
 
     * 0 to 5: the axes.
     * 6: a point O1 on axis 1; 7 to 10: the ways from there to O2, O3, O4 and O5, where the last axes meet; of a wrist
@@ -40,14 +43,14 @@ def closed_form(paths: Paths) -> Floats:
     for i, row in enumerate([*paths.joints, paths.tips[0]]):
         placement = frames[i] = placement @ matrix_of(row[:12])
     axes, points = frames[:6, :3, 2], frames[:6, :3, 3].copy()
-    wrist = _meeting(axes[4:], points[4:])
-    if wrist is None or not _parallel(axes[1], axes[2]):
+    wrist = _meeting(axes[4:], points[4:], close)
+    if wrist is None or not _parallel(axes[1], axes[2], close):
         return none
     points[4] = wrist
     sides = np.zeros(2)
-    if _parallel(axes[1], axes[3]):
+    if _parallel(axes[1], axes[3], close):
         sides = np.round(axes[1:3] @ axes[3])
-    elif np.linalg.norm(np.cross(wrist - points[3], axes[3])) < CLOSE:
+    elif np.linalg.norm(np.cross(wrist - points[3], axes[3])) < close:
         points[3] = wrist
     else:
         return none
@@ -59,16 +62,16 @@ def closed_form(paths: Paths) -> Floats:
     return np.array([*axes, points[0], *ways, *to_tip, across, [level, *sides]])
 
 
-def _parallel(a: Floats, b: Floats) -> bool:
-    return bool(np.linalg.norm(np.cross(a, b)) < CLOSE)
+def _parallel(a: Floats, b: Floats, close: float) -> bool:
+    return bool(np.linalg.norm(np.cross(a, b)) < close)
 
 
-def _meeting(axes: Floats, points: Floats) -> Floats | None:
+def _meeting(axes: Floats, points: Floats, close: float) -> Floats | None:
     """Where two axes (2, 3) through two points (2, 3) meet, if they do."""
-    if _parallel(*axes):
+    if _parallel(axes[0], axes[1], close):
         return None
     ways = np.stack([axes[0], -axes[1]], axis=1)
     along, *_ = np.linalg.lstsq(ways, points[1] - points[0], rcond=None)
     near = points + along[:, None] * axes
     met: Floats = near.mean(axis=0)
-    return met if np.linalg.norm(near[0] - near[1]) < CLOSE else None
+    return met if np.linalg.norm(near[0] - near[1]) < close else None

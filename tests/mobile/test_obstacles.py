@@ -157,11 +157,11 @@ def test_a_world_without_obstacles_may_be_written_in_many_ways():
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
 def test_coordinates_that_are_no_numbers_are_refused_in_every_form(bad):
     ring = [(0, 0), (bad, 0), (1, 1)]
+    with np.errstate(invalid="ignore"):  # shapely warns while it makes them
+        shapes = shapely.Polygon(ring), shapely.LineString(ring), shapely.Point(bad, 0)
     sources = [
         ring,
-        shapely.Polygon(ring),
-        shapely.LineString(ring),
-        shapely.Point(bad, 0),
+        *shapes,
         f"POLYGON ((0 0, {bad} 0, 1 1, 0 0))",
         f"LINESTRING (0 0, {bad} 0)",
         {"type": "Point", "coordinates": [bad, 0]},

@@ -28,8 +28,9 @@ class Boxes:
         near: float,
         aligned: float,
         least: float = TINY,
+        begin: Floats | None = None,
     ) -> None:
-        """Begin with all configurations inside the limits.
+        """Begin with all configurations inside the limits, or with some boxes of them.
 
         Args:
             arm: The arm.
@@ -37,6 +38,7 @@ class Boxes:
             near: How far (m) from it the tip may be.
             aligned: By how much (rad) it may be turned.
             least: Half width (rad or m) below which a box is kept instead of split.
+            begin: (b, 2 m) the boxes; outside of them there must be no solution.
         """
         self.arm = arm
         self.looked = 0
@@ -44,8 +46,9 @@ class Boxes:
         self._target = arm.target(pose, near, aligned)
         self._least = least
         self._waiting = np.empty((DEPTH, arm.whole.shape[1]))
-        self._waiting[0] = arm.whole[0]
-        self._count = 1
+        first = arm.whole if begin is None or len(begin) > DEPTH // 2 else begin
+        self._count = len(first)
+        self._waiting[: self._count] = first
 
     def within(self, box: Floats, least: float) -> Boxes:
         """The same for the configurations of one box (2 m,) that was kept, down to smaller ones."""

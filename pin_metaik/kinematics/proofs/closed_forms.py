@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,6 +55,33 @@ class Branches:
         turns = np.ceil((self.limits.lower - ROUNDING - radii - angles) / TURN)  # to the first copy that is not below
         bound = np.isfinite(self.limits.lower) & (radii < np.pi)
         return np.hstack([angles + TURN * np.where(bound, turns, 0.0), radii])
+
+    @property
+    def pieces(self) -> Floats:
+        """(b, 12) boxes that hold all configurations inside the limits: those of the branches, cut at the limits.
+
+        An angle within its radius may be inside the limits at both of their ends; then there is a box for each.
+        """
+        found: list[list[tuple[float, float]]] = []
+        for number in self.possible:
+            spans = [self._spans(c, float(self.angles[number, c]), float(self.radii[number, c])) for c in range(6)]
+            found += [list(way) for way in product(*spans)]
+        ends = np.array(found).reshape(-1, 6, 2)
+        return np.hstack([ends.mean(axis=2), 0.5 * (ends[:, :, 1] - ends[:, :, 0])])
+
+    def _spans(self, c: int, angle: float, radius: float) -> list[tuple[float, float]]:
+        """The parts of a range that an angle and its copies may lie in, those that are the same but for turns once."""
+        lower, upper = float(self.limits.lower[c]), float(self.limits.upper[c])
+        if radius >= math.pi:
+            least = lower if math.isfinite(lower) else upper - TURN if math.isfinite(upper) else -math.pi
+            return [(least, min(upper, least + TURN))]
+        if not math.isfinite(lower) or not math.isfinite(upper):
+            return [(angle - radius, angle + radius)]
+        first = math.ceil((lower - ROUNDING - radius - angle) / TURN)
+        last = math.floor((upper + ROUNDING + radius - angle) / TURN)
+        ends = [(angle + TURN * k - radius, angle + TURN * k + radius) for k in range(first, last + 1)]
+        whole = [(low, high) for low, high in ends if low >= lower and high <= upper]
+        return whole[:1] or [(min(max(low, lower), upper), max(min(high, upper), lower)) for low, high in ends]
 
     def nearest(self) -> Floats | None:
         """Coordinates (6,) of the branch least beyond a limit, brought inside the limits; None, if none is real."""
