@@ -1,1 +1,1 @@
-"""Trajectories of a synchro-drive robot along a path: straights, curves, and the speeds that make them quick."""
+"""Trajectories along a path: straights, curves, and the speeds that make them quick; from rest or in motion."""

@@ -17,8 +17,7 @@ from pin_metaik.mobile.errors import Blocked, NoPath, NoRoom
 from pin_metaik.mobile.motion.joining import Joining, backwards, joining, straightening
 from pin_metaik.mobile.motion.result import TrajectoryPlan
 from pin_metaik.mobile.motion.route import Route
-from pin_metaik.mobile.motion.speeds import ROUNDS as MANY
-from pin_metaik.mobile.motion.speeds import optimal_speeds
+from pin_metaik.mobile.motion.speeds import ROUNDS, optimal_speeds
 from pin_metaik.mobile.motion.timing import drive
 from pin_metaik.mobile.motion.trajectory import State, Trajectory
 from pin_metaik.mobile.motion.vehicle import NOMAD_200, Vehicle
@@ -31,7 +30,7 @@ from pin_metaik.optimize.settings import few, within
 
 SPEEDS = 4  # tried at either end, besides the state's own
 FEW, NEAR = 5, 1e-3  # rounds of a search for speeds that only compares, and how near to the best it surely is
-ROUNDS, SETTLED = 60, 1e-13  # at most, until the two ends of a path without corners see each other; m
+PASSES, SETTLED = 60, 1e-13  # at most, until the two ends of a path without corners see each other; m
 ROUNDING = 1e-9  # of the largest speed and turning rate; a state read from a trajectory may be as much beyond them
 MARGIN = 0.1  # m
 
@@ -212,7 +211,7 @@ def _quickest(
     for bound, ends in sorted(bounds, key=lambda entry: entry[0]):
         if bound >= (1 + NEAR) * (best.time if best is not None and best.success else limit):
             break
-        plan = made(ends, solid, MANY)
+        plan = made(ends, solid, ROUNDS)
         if plan is not None and (best is None or (plan.success, -plan.time) > (best.success, -best.time)):
             best = plan
     return best
@@ -225,7 +224,7 @@ def _ends(
     turned = None if goal is None else State(goal.x, goal.y, goal.heading + np.pi, goal.v)
     ahead = corners[0] if len(corners) else last
     behind = corners[-1] if len(corners) else np.array([start.x, start.y])
-    for _ in range(ROUNDS):
+    for _ in range(PASSES):
         on = joining(start, first, ahead, vehicle)
         if on is None:
             return None

@@ -24,6 +24,7 @@ DENSE = 1e-3  # s; half a millimetre to the next sample, at a distance of 0.2 m 
 MANY_CORNERS, TUBE = 10, 0.05  # of a path that grids or samplers made; m in which it may be straightened
 
 OPTIMALITY = "quickest of the trajectories of straights and constant-speed curves on this path, not of all trajectories"
+JOINED = "quickest of some ways onto the path and off it, each with the best speeds in the corners between"
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +111,7 @@ class TrajectoryPlan:
         """What a user should know, in sentences."""
         stops = [str(i + 1) for i, v in enumerate(self.v) if v == 0]
         tight = [str(i + 1) for i, cap in enumerate(self.route.caps) if cap == 0]
-        said = [OPTIMALITY] if self.method == "dp" else []
+        said = [JOINED if self.joining else OPTIMALITY] if self.method == "dp" else []
         if tight:
             said.append(f"no room to turn while moving at corner {', '.join(tight)}: plan the path with a margin")
         if stops:

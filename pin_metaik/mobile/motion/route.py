@@ -24,6 +24,8 @@ SKIN = 1e-6  # m; how deep a point robot may touch an obstacle
 HALVINGS = 34  # of the interval in which the largest free speed lies
 MANTISSA = 53  # halvings that leave no interval
 
+_Shape = tuple[Array, Array]
+
 
 @dataclass(frozen=True, eq=False)
 class Route:
@@ -144,14 +146,16 @@ class Route:
             raise InvalidSetting(f"corner is 0 to {len(self.caps) - 1}, got {corner}")
         cap = float(self.caps[corner])
         tree = shapely.STRtree(obstacles)
-        near = tree.query(self._cut(corner, cap), predicate="dwithin", distance=radius)
+        shape = self._curve(corner, cap)
+        near = tree.query(_cut(shape, cap), predicate="dwithin", distance=radius)
         if not len(near):
             return cap
         solid = shapely.union_all([obstacles[i] for i in near])
         free, tight = 0.0, cap
         for _ in range(HALVINGS):
             v = (free + tight) / 2
-            if keeps_clear([self._cut(corner, v)], solid, radius):
+            shape = self._curve(corner, v) if self.vehicle.coupled else shape
+            if keeps_clear([_cut(shape, v)], solid, radius):
                 free = v
             else:
                 tight = v
@@ -175,14 +179,20 @@ class Route:
             free, tight = np.where(fits, v, free), np.where(fits, tight, v)
         return free
 
-    def _cut(self, corner: int, v: float) -> shapely.Polygon:
-        """What lies between a corner and its curve at speed v."""
+    def _curve(self, corner: int, v: float) -> _Shape:
+        """A corner (2,), and the curve at speed v from there (m, 2), per m/s."""
         turn = float(self.turns[corner])
-        x, y = v * turn_shape(abs(turn), self.vehicle, v).T
+        x, y = turn_shape(abs(turn), self.vehicle, v).T
         at, along = self.path.corners[corner], self.path.points[corner + 1] - self.path.points[corner]
         cos, sin = along / np.hypot(*along)
         y = np.copysign(1.0, turn) * y
-        return shapely.Polygon(np.vstack((at, at + np.column_stack((cos * x - sin * y, sin * x + cos * y)))))
+        return at, np.column_stack((cos * x - sin * y, sin * x + cos * y))
+
+
+def _cut(shape: _Shape, v: float) -> shapely.Polygon:
+    """What lies between a corner and its curve at speed v."""
+    at, curve = shape
+    return shapely.Polygon(np.vstack((at, at + v * curve)))
 
 
 def keeps_clear(places: Sequence[shapely.Geometry], solid: shapely.Geometry, radius: float, slack: float = 0.0) -> bool:
