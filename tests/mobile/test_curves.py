@@ -86,6 +86,15 @@ def test_no_random_drive_is_shorter_than_the_shortest(reverse):
     assert attained > 5000
 
 
+def test_an_arc_beside_a_very_short_straight_is_no_full_circle():
+    """Directions of what is 1e-5 long are known to 1e-11 only."""
+    for arc in np.linspace(0.1, 1.5, 200):
+        for straight in (1e-5, 1e-6):
+            lengths = [np.array([arc]), np.array([straight])]
+            _, found = shortest_words(np.zeros((1, 3)), driven("RS", lengths), 1.0, False)
+            assert np.abs(found).sum() <= arc + straight + 1e-9
+
+
 def dense_dubins(goal, count=20_000):
     """Least length of three pieces by trying every first arc: the last one follows, and sign changes tell the rest."""
     t = np.linspace(0, 2 * np.pi, count)

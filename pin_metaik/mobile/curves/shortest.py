@@ -17,6 +17,8 @@ PIECES = 5  # of the longest word
 def shortest_curve(start: Pose, goal: Pose, turning_radius: float, *, reverse: bool = False) -> Curve:
     """The shortest curve from pose to pose whose radius is nowhere smaller, in a plane without obstacles.
 
+    It ends at the goal to about 1e-9, in m and rad, which is how near to none an arc counts as none.
+
     Args:
         start: (x, y, heading) in m and rad.
         goal: (x, y, heading).

@@ -22,7 +22,8 @@ Formula = Callable[[Array, Array, Array], tuple[Array, ...]]
 Found = tuple[str, list[Array]]
 
 QUARTER = np.pi / 2
-ROUNDING = 1e-12  # rad, and of squares and shares
+ROUNDING = 1e-12  # of squares, sines and cosines
+FULL = 1e-9  # rad; an arc that lacks as little to a full circle has none, but for rounding beside a short straight
 
 
 def dubins_words(x: Array, y: Array, phi: Array) -> Iterator[Found]:
@@ -56,7 +57,7 @@ def _mirrored(word: str) -> str:
 def _forward(angle: Array) -> Array:
     """An angle in [0, 2 pi), where what is below zero by rounding only is zero."""
     turned = np.mod(angle, 2 * np.pi)
-    return np.where(turned > 2 * np.pi - ROUNDING, 0.0, turned)
+    return np.where(turned > 2 * np.pi - FULL, 0.0, turned)
 
 
 def _near(angle: Array) -> Array:
