@@ -1,4 +1,3 @@
-import builtins
 from dataclasses import replace
 
 import numpy as np
@@ -74,14 +73,7 @@ def test_the_history_of_a_design_is_drawn(tmp_path):
 
 
 def test_without_matplotlib_the_extra_is_named(monkeypatch):
-    real = builtins.__import__
-
-    def without(name, *args, **kwargs):
-        if name.startswith("matplotlib"):
-            raise ImportError(name)
-        return real(name, *args, **kwargs)
-
-    monkeypatch.setattr(builtins, "__import__", without)
+    monkeypatch.setattr("pin_metaik.lookup.find_spec", lambda package: None)
     with pytest.raises(MissingExtra, match=r"a picture needs .*\[plots\]"):
         draw(reference())
 
