@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.ik.collect import collect
-from pin_metaik.ik.gather import VAIN, VAIN_EACH, gather
+from pin_metaik.ik.gather import gather
 from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
@@ -52,7 +52,7 @@ class ClearSearch:
         """Set up for a problem; ``base`` (nq,) holds the joints that the chain does not move."""
         self.problem, self.world, self.base, self.ledger, self.rng = problem, world, base, ledger, rng
         self.found = np.empty((CANDIDATES, problem.chain.n))
-        self.known = self.vain = 0
+        self.known = 0
         self.complete = False
         self.proof: Proof | None = None
         self.resolution: float | None = None
@@ -122,7 +122,7 @@ class ClearSearch:
     def others(self, starts: Iterable[NDArray[np.float64]]) -> NDArray[np.float64] | None:
         """Descend from starts (n,), one by one; the first new solution that is free."""
         for start in starts:
-            if self.complete or self.ledger.over():
+            if self.ledger.over():
                 break
             if self.known == CANDIDATES:  # forget all but the least deep
                 self.found[:ELITE] = self.found[self._by_depth()[:ELITE]]
@@ -130,13 +130,11 @@ class ClearSearch:
                 self._depths[:] = np.nan
                 self._pushed.clear()
             room = self.found[: self.known + 1]
-            spent, known, row = gather(
+            spent, known, _ = gather(
                 self.problem, start[None], room, self.known, APART, 2, self.ledger.left(), branch=False
             )
             self.ledger.spent += spent
-            new = known > self.known
-            self.known, self.vain = known, 0 if new else self.vain + row
-            self.complete = not self._redundant and self.vain >= VAIN + VAIN_EACH * known
+            new, self.known = known > self.known, known
             newest: NDArray[np.float64] = room[-1]
             if new and self._accepts(newest):
                 return newest
