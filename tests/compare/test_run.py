@@ -227,12 +227,14 @@ def scheduler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
             stack.callback(process.terminate)
 
         start("scheduler", "--port", "0", "--scheduler-file", str(where), *here)
-        for _ in range(2):
-            start("worker", "--scheduler-file", str(where), "--nworkers", "1", "--nthreads", "1", *here)
-        until = time.monotonic() + 60.0
-        while not where.exists() and time.monotonic() < until:
+        address, until = None, time.monotonic() + 60.0
+        while address is None and time.monotonic() < until:
             time.sleep(0.05)
-        address = str(json.loads(where.read_text())["address"])
+            with suppress(FileNotFoundError, json.JSONDecodeError):  # it is not there yet, or not whole
+                address = str(json.loads(where.read_text())["address"])
+        assert address is not None
+        for _ in range(2):
+            start("worker", address, "--nworkers", "1", "--nthreads", "1", *here)
         from distributed import Client
 
         with Client(address, timeout=60) as client:  # type: ignore[no-untyped-call]
