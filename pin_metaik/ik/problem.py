@@ -1,4 +1,4 @@
-"""An inverse-kinematics problem: what is descended (a cost) and what counts (a test)."""
+"""An inverse-kinematics problem: the cost that is descended and the test that counts."""
 
 from __future__ import annotations
 
@@ -51,14 +51,14 @@ class IKProblem:
     Attributes:
         chain: The chain.
         targets: One for each of its frames, in the chain's order.
-        tasks: (T, 26) the targets as the kernels take them; a radius as a tolerance is aimed at in its middle.
+        records: (T, 26) the targets as the kernels take them; a radius as a tolerance is aimed at in its middle.
         rows: (m, 2) the (frame, axis) pairs that count: three translations, three rotations, less the free ones.
         world: What must not collide; ``None``: nothing is checked.
     """
 
     chain: Chain
     targets: tuple[Target, ...]
-    tasks: NDArray[np.float64]
+    records: NDArray[np.float64]
     rows: NDArray[np.int64]
     world: CollisionWorld | None = None
 
@@ -89,8 +89,8 @@ class IKProblem:
             targets = tuple(Target.of(one) for one in target)
         if several or targets[0].frame is not None:
             targets = _match(chain.frames, targets)
-        tasks = targets[0].task[None] if len(targets) == 1 else np.array([one.task for one in targets])
-        return IKProblem(chain, targets, tasks, _rows(tuple([one.counts for one in targets])), world)
+        records = targets[0].record[None] if len(targets) == 1 else np.array([one.record for one in targets])
+        return IKProblem(chain, targets, records, _rows(tuple([one.counts for one in targets])), world)
 
     def at(self, q: ArrayLike) -> IKProblem:
         """The same problem, with the joints that the chain holds where q (nq,) has them; see ``Chain.at``."""
@@ -104,7 +104,7 @@ class IKProblem:
         An answer in the middle of the tolerances is a better one, and looked for first. Where the middle is out of
         reach, descents towards it end at a compromise that may be outside; these end inside.
         """
-        return replace(self, tasks=np.array([target.whole_task for target in self.targets]))
+        return replace(self, records=np.array([target.whole_record for target in self.targets]))
 
     @property
     def loose(self) -> bool:
@@ -122,15 +122,15 @@ class IKProblem:
         return self.chain.box
 
     @cached_property
-    def descended(self) -> NDArray[np.int64] | None:
+    def kernel_rows(self) -> NDArray[np.int64] | None:
         """The rows as a descent takes them: None for one frame's whole pose without slack, which it is made for."""
-        whole = len(self.targets) == 1 and not self.tasks[0, SLACK:WEIGHT].any()
+        whole = len(self.targets) == 1 and not self.records[0, SLACK:WEIGHT].any()
         return None if whole else self.rows
 
     @cached_property
-    def good_enough(self) -> float:
+    def success_cost(self) -> float:
         """A cost that is certainly within every tolerance."""
-        return float(np.min(self.tasks[:, [WEIGHT, TURN_WEIGHT]] * self.tasks[:, [NEAR, ALIGNED]]))
+        return float(np.min(self.records[:, [WEIGHT, TURN_WEIGHT]] * self.records[:, [NEAR, ALIGNED]]))
 
     @cached_property
     def gap(self) -> float:
@@ -163,12 +163,12 @@ class IKProblem:
         """
         x = array("x", x, self.chain.n)
         r, J = np.empty(len(self.rows)), np.empty((self.chain.n, len(self.rows)))
-        self.chain.kernels.linearize(self.chain.bare, self.tasks, self.rows, x, r, J)
+        self.chain.kernels.linearize(self.chain.bare, self.records, self.rows, x, r, J)
         return r, J
 
     def branches(self, x0: NDArray[np.float64]) -> NDArray[np.float64]:
         """Coordinates (b, n) that the arm's closed form has for a whole pose, if it has one; see ``Chain.branches``."""
-        if self.descended is not None:
+        if self.kernel_rows is not None:
             return np.empty((0, self.chain.n))
         return self.chain.branches(self.targets[0].pose.homogeneous, x0)
 
@@ -224,7 +224,7 @@ class IKProblem:
         few("count", count, 0)
         count = int(count)
         out = np.empty((count, self.chain.n))
-        self.chain.kernels.nearest_samples(self.chain.block, self.tasks, out)
+        self.chain.kernels.nearest_samples(self.chain.block, self.records, out)
         return out
 
     def costs(self, X: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -234,7 +234,7 @@ class IKProblem:
         """
         X = array("X", X, "k", self.chain.n, finite=False)
         out = np.empty(len(X))
-        self.chain.kernels.costs(self.chain.bare, self.tasks, X, out)
+        self.chain.kernels.costs(self.chain.bare, self.records, X, out)
         return out
 
     def verdict(self, q: NDArray[np.float64]) -> Verdict:

@@ -55,7 +55,7 @@ class Target:
     orientation_tolerance: Tolerance = DEFAULT_TOLERANCE
     position_weight: float = 1.0
     orientation_weight: float = 1.0
-    task: NDArray[np.float64] = field(init=False, repr=False)  # (26,) as the kernels take it
+    record: NDArray[np.float64] = field(init=False, repr=False)  # (26,) as the kernels take it
     counts: tuple[bool, ...] = field(init=False, repr=False)  # which of the six axes are not free
     loose: bool = field(init=False, repr=False)  # whether one of those may be off by more than the default tolerance
 
@@ -78,7 +78,7 @@ class Target:
         # A goal of ``kernel.layout``: the world in the target frame, slack and weight of each axis, radii.
         world = (a, d, g, b, e, h, c, f, i, -a * x - d * y - g * z, -b * x - e * y - h * z, -c * x - f * y - i * z)
         weights = (weight, weight, weight, turn, turn, turn)
-        object.__setattr__(self, "task", np.array(world + slack + lean + weights + (near, aligned)))
+        object.__setattr__(self, "record", np.array(world + slack + lean + weights + (near, aligned)))
         object.__setattr__(self, "counts", _finite(slack + lean))
         object.__setattr__(self, "loose", wide or broad)
 
@@ -124,14 +124,14 @@ class Target:
         )
 
     @cached_property
-    def whole_task(self) -> NDArray[np.float64]:
+    def whole_record(self) -> NDArray[np.float64]:
         """(26,) as the kernels take it, aimed at all that is accepted: up to its tolerances an error counts nothing."""
-        task = self.task.copy()
+        record = self.record.copy()
         parts = (SLACK, NEAR, self.position_tolerance), (TURN_SLACK, ALIGNED, self.orientation_tolerance)
         for slacks, allowed, tolerance in parts:
             slack, radius = _whole(tolerance)
-            task[slacks : slacks + 3], task[allowed] = slack, radius
-        return task
+            record[slacks : slacks + 3], record[allowed] = slack, radius
+        return record
 
     @property
     def allowance(self) -> tuple[float, float]:

@@ -14,7 +14,7 @@ import pytest
 
 import pin_metaik as mik
 from pin_metaik.collision import load_scene
-from pin_metaik.ik.sharing import share_out
+from pin_metaik.ik.threads import run_parallel
 from tests.robots_under_test import chain_of
 
 DOWN = np.diag([1.0, -1.0, -1.0])
@@ -102,7 +102,7 @@ def test_an_error_in_one_thread_ends_the_work_of_all() -> None:
         time.sleep(1e-3)
 
     with pytest.raises(ZeroDivisionError):
-        share_out(work, range(10_000), 3)
+        run_parallel(work, range(10_000), 3)
     assert len(started) < 100
     assert threading.active_count() <= before
 

@@ -53,7 +53,7 @@ def iterate(
     starts = given_starts(problem, starts, evaluations)
     chain = problem.chain
     lower, upper = chain.limits.lower, chain.limits.upper
-    linearize, given = chain.kernels.linearize, (chain.bare, problem.tasks, problem.rows)
+    linearize, given = chain.kernels.linearize, (chain.bare, problem.records, problem.rows)
     r = np.empty(len(problem.rows))  # (m,)
     by_coordinate = np.empty((chain.n, len(r)))  # (n, m)
     J = by_coordinate.T
