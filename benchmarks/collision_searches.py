@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 import pin_metaik as mik
 from pin_metaik.ik.clearance.qp import Push
 from pin_metaik.ik.clearance.search import ClearSearch
+from pin_metaik.ik.goals.pose import TargetLike
 from pin_metaik.ik.state import SearchState
-from pin_metaik.ik.target import TargetLike
 from pin_metaik.optimize import make
 
 

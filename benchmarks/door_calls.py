@@ -73,6 +73,11 @@ def problem() -> mik.IKProblem:
 
 
 @cache
+def placed() -> mik.goals.Placed:
+    return mik.goals.Placed(chain(), chain().reference)
+
+
+@cache
 def table() -> robots.DHTable:
     return robots.DHTable("arm", "standard", (robots.DHRow(a=1.0), robots.DHRow(a=1.0)))
 
@@ -519,6 +524,8 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.Target.at": lambda: {"xyz": (0.3, 0.3, 0.4), "frame": None, "tolerance": 1e-5},
     "mik.Target.facing": lambda: {"rotation": np.eye(3), "frame": None, "tolerance": 1e-5},
     "mik.Target.of": lambda: {"target": POSE},
+    "mik.Target.residual": lambda: {"at": placed()},
+    "mik.Target.met": lambda: {"at": placed()},
     "mik.Target.judge": lambda: {"placement": POSE},
     "mik.load_robot": lambda: {"name": "rv7fl", "parameters": None, "free_flyer": False, "mimic": True},
     "mik.minimize": lambda: {

@@ -16,12 +16,12 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import array, instance
 from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.errors import InvalidConfiguration, InvalidTarget
+from pin_metaik.ik.goals.pose import Target, TargetLike
 from pin_metaik.ik.problem import check_world
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solve import solve_ik
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
 from pin_metaik.ik.starts import drawn
-from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.ik.threads import run_parallel, slices
 from pin_metaik.kinematics import RESTARTS, Chain
 from pin_metaik.kinematics.kernel.layout import ANGLE, DISTANCE, WITHOUT_BRANCH

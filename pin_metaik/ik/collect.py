@@ -105,8 +105,8 @@ class Collection:
         if formed is not None and self._by_closed_form(formed.boxes):
             return
         self._by_descents()
-        whole = len(problem.targets) == 1 and all(problem.targets[0].counts)
-        if formed is None and whole and problem.chain.n <= len(problem.rows) and not problem.loose:
+        whole = len(problem.targets) == 1 and all(problem.targets[0].counts) and not problem.goals
+        if formed is None and whole and problem.chain.n <= problem.m and not problem.loose:
             self._keep_exact()
             self._by_cover()
 

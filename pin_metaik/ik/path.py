@@ -17,11 +17,11 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import array, checked, shown
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidSetting, InvalidTarget
+from pin_metaik.ik.goals.pose import TargetLike
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.solver import DEFAULT_SOLVER
 from pin_metaik.ik.starts import drawn
-from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.plain import fields_of
 from pin_metaik.randomness import Rng

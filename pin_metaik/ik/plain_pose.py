@@ -26,12 +26,12 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
+from pin_metaik.ik.goals.pose import DEFAULT_TOLERANCE, Target
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.refine.descent import SETTLED, STIFF
 from pin_metaik.ik.refine.protocol import Refinement
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.starts import drawn
-from pin_metaik.ik.target import DEFAULT_TOLERANCE, Target
 from pin_metaik.kinematics import RESTARTS, Chain
 from pin_metaik.kinematics.kernel.layout import ANGLE, DESCEND, DISTANCE, DONE, EVALUATIONS, SEARCH
 

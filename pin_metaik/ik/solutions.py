@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 from typing import Any
@@ -14,10 +14,9 @@ from pin_metaik.arguments import checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.collect import collect
-from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.problem import Asked, IKProblem
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.solver import APART, DEFAULT_SOLVER, IKSolver
-from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Budget
 from pin_metaik.optimize.settings import few, positive
@@ -74,7 +73,7 @@ class IKSolutions:
 @checked
 def solve_ik_all(
     chain: Chain,
-    target: TargetLike | Sequence[TargetLike],
+    target: Asked,
     q0: ArrayLike | None = None,
     *,
     limit: int = 64,

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import instance
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.ik.plain_pose import solve_plain
-from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.problem import Asked, IKProblem
 from pin_metaik.ik.result import IKResult
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
-from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.randomness import Rng, as_seed
 
 
 def solve_ik(
     chain: Chain,
-    target: TargetLike | Sequence[TargetLike],
+    target: Asked,
     q0: ArrayLike | None = None,
     *,
     solver: IKSolver | None = None,
@@ -31,7 +28,7 @@ def solve_ik(
     Args:
         chain: The joints to move and the frames to place.
         target: World pose of the chain's frame (``pin.SE3`` or 4x4), a position (3,) in m, a ``Target``, or one
-            ``Target`` for each frame of a chain that has several.
+            ``Target`` for each frame of a chain that has several; or a list with any goals (see ``pin_metaik.goals``).
         q0: (nq,) configuration to start from; joints outside the chain, and locked ones, are where it has them, in the
             search and in the answer. An arm with a closed form stays on the branch that it is on (shoulder, elbow and
             wrist), if that has a solution. Default: the chain's reference.

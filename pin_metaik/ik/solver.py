@@ -19,6 +19,7 @@ from pin_metaik.ik.clearance import keep_clear
 from pin_metaik.ik.collect import collect
 from pin_metaik.ik.criteria import Criterion, Measure, measure_of, slide
 from pin_metaik.ik.exclude import FAR, FIRST, LONG, Exclusion
+from pin_metaik.ik.goals.pose import DEFAULT_TOLERANCE
 from pin_metaik.ik.plain_pose import solve_plain
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine import DLS, Refinement, Refiner, make_refiner
@@ -26,7 +27,6 @@ from pin_metaik.ik.refine.descent import Descent, descent_of
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.starts import start_batches
 from pin_metaik.ik.state import ENDLESS, SearchState
-from pin_metaik.ik.target import DEFAULT_TOLERANCE
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
 from pin_metaik.optimize.settings import whole
 from pin_metaik.randomness import Rng, as_generator, as_seed
@@ -115,7 +115,7 @@ class IKSolver:
         """Solve a problem, in its world if it has one: what ``solve_ik`` does, which has the arguments and errors."""
         problem, seed = problem if q0 is None else problem.at(q0), as_seed(rng)
         first = None
-        if len(problem.targets) == 1:
+        if len(problem.targets) == 1 and not problem.goals:
             first = solve_plain(problem.chain, problem.targets[0], q0, self.kernel_settings, seed)
         return self._finish(problem, first, q0, seed)
 
@@ -188,7 +188,7 @@ class IKSolver:
             evaluations=state.spent,
             seconds=perf_counter() - began,
             chain=chain,
-            given=problem.targets,
+            given=problem.asked,
             trace=np.concatenate(state.traces) if state.traces else None,
             world=problem.world,
             proof=None if verdict.accepted or verdict.collides else state.proof,

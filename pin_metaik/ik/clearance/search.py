@@ -59,7 +59,7 @@ class ClearSearch:
         self.resolution: float | None = None
         self._depths = np.full(CANDIDATES, np.nan)  # of the solutions found, NaN where not known yet
         self._pushed: set[int] = set()
-        self._redundant = problem.chain.n > len(problem.rows) or problem.loose
+        self._redundant = problem.chain.n > problem.m or problem.loose or bool(problem.goals)
         self._generator = as_generator(rng)
 
     def run(self, x: NDArray[np.float64], seeder: Metaheuristic) -> NDArray[np.float64] | None:

@@ -70,21 +70,29 @@ class CompiledDescent:
     Attributes:
         damping: What the squared error is multiplied with, 1/m^2 or 1/rad^2.
         iterations: Steps from one start at most.
+        otherwise: What descends for goals that only Python evaluates.
     """
 
     damping: float
     iterations: int
+    otherwise: Descent
 
     def refine(self, problem: IKProblem, starts: Array, evaluations: int) -> Refinement:
         """See ``Descent``."""
+        if problem.goals:
+            return self.otherwise.refine(problem, starts, evaluations)
         return _descend(problem, problem.chain.bare, starts, self.settings(evaluations))
 
     def refine_anywhere(self, problem: IKProblem, starts: Array, evaluations: int) -> Refinement:
         """See ``Descent``; the first start goes before the samples when its pose is nearer than theirs."""
+        if problem.goals:
+            return self.otherwise.refine_anywhere(problem, starts, evaluations)
         return _descend(problem, problem.chain.block, starts, self.settings(evaluations))
 
     def settle(self, problem: IKProblem, x: Array, evaluations: int) -> Refinement:
         """See ``Descent``; in small steps."""
+        if problem.goals:
+            return self.otherwise.settle(problem, x, evaluations)
         settings = np.array([STIFF, SETTLED, self.iterations, evaluations])
         return _descend(problem, problem.chain.bare, x[None], settings)
 
@@ -101,6 +109,8 @@ class CompiledDescent:
         branch: bool = True,
     ) -> tuple[int, int, int]:
         """See ``Descent``."""
+        if problem.goals:
+            return self.otherwise.gather(problem, starts, found, known, apart, patience, evaluations, branch=branch)
         chain, starts = problem.chain, np.ascontiguousarray(starts)
         given = chain.bare, problem.records, problem.kernel_rows, starts, self.settings(evaluations)
         return chain.kernels.descend_all(*given, apart, patience, branch, found, known)

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik.problem import IKProblem
-from pin_metaik.ik.refine.descent import CompiledDescent
+from pin_metaik.ik.refine.descent import CompiledDescent, Stepwise
+from pin_metaik.ik.refine.lm import LM
 from pin_metaik.ik.refine.protocol import Refinement, given_starts
 
 
@@ -21,7 +22,8 @@ class DLS:
 
     Each step is dx = -J' (J J' + lambda I)^-1 e over the joints that are not at a limit and pushed outward, with
     lambda = damping |e|^2 + 1e-9. Joints that would cross a limit go onto it and the step is solved again for the
-    others. A start is given up when four steps do not take the error below 70 % of what it was.
+    others. A start is given up when four steps do not take the error below 70 % of what it was. Goals that only Python
+    evaluates are descended to by Levenberg-Marquardt (``LM``) instead.
 
     Attributes:
         damping: What the squared error is multiplied with, 1/m^2 or 1/rad^2.
@@ -40,7 +42,7 @@ class DLS:
 
     def descent(self) -> CompiledDescent:
         """Its compiled loops, as a global search takes them."""
-        return CompiledDescent(self.damping, self.iterations)
+        return CompiledDescent(self.damping, self.iterations, Stepwise(LM()))
 
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent."""
