@@ -2,12 +2,12 @@
 
     python benchmarks/fingerprint.py after.json
     PYTHONPATH=OTHER_TREE python benchmarks/fingerprint.py before.json
-    python benchmarks/fingerprint.py after.json --against before.json     # computes nothing where after.json is there
+    python benchmarks/fingerprint.py after.json --against before.json     # reads after.json if it is there
 
-Asked are the poses of three families on ten arms and targets that leave something free (``solve_ik``), twenty robots
-(``solve_ik_all``), ten paths (``solve_ik_path``) and three scenes (``solve_ik`` in a world). An answer is its status and
-the bits of its configurations; questions have a digest of their own, so that other targets are told from other answers.
-Only names that ``pin_metaik`` had from the beginning are used.
+The questions are poses of three families for ten arms and targets that leave something free (``solve_ik``), poses for
+twenty robots (``solve_ik_all``), ten paths (``solve_ik_path``) and three scenes (``solve_ik`` in a world). The digest
+of an answer is of its status and of the bits of its configurations. The questions of a group have a digest, too, so
+that other targets are not taken for other answers. Only names that ``pin_metaik`` has had from the beginning are used.
 """
 
 from __future__ import annotations

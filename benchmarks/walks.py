@@ -80,7 +80,7 @@ def walks(folder: Path) -> Iterator[tuple[str, Walk]]:
     map_file = write_map(folder)
     yield "map.yaml to trajectory", lambda: trajectory(map_file)
 
-    suite = Suite(("ur5",), ("random",), ("dls", "lm"), targets=2, budget=200)
+    suite = Suite(("ur5",), ("random",), ("dls", "lm"), tasks=2, budget=200)
     rows = (folder / f"rows_{next(numbers)}" for _ in iter(int, 1))
     yield "`compare` to rows (4 trials)", lambda: compare(suite, next(rows))
     compare(suite, folder / "rows")
@@ -150,7 +150,8 @@ def table(before: dict[str, Count] | None, after: dict[str, Count]) -> Iterator[
     for name, now in after.items():
         was = before.get(name) if before else None
         cells = [
-            f"{new:,}" if was is None else f"{old:,} → {new:,}" for old, new in zip((was or now)[:3], now[:3], strict=True)
+            f"{new:,}" if was is None else f"{old:,} → {new:,}"
+            for old, new in zip((was or now)[:3], now[:3], strict=True)
         ]
         yield f"| {name} | {' | '.join(cells)} |"
 
@@ -165,10 +166,10 @@ def page(before: dict[str, Count], after: dict[str, Count], command: str) -> str
             "",
             f"`{command}`, {datetime.datetime.now(datetime.UTC):%Y-%m-%d}, {machine}.",
             "",
-            "Python calls inside the package in one call, the files that they are in (rooms), and how often the next call",
-            "is in another file than the one before (stays); caches and compiled code are warm. Before → after; the trees",
-            "do not do the same in all walks: arguments are read at public functions, answers come with proofs, files",
-            "name every key that they cannot use.",
+            "Python calls inside the package in one call, the files that they are in (rooms), and how often the next",
+            "call is in another file than the one before (stays); caches and compiled code are warm. Before → after.",
+            "The later tree does more in some walks: public functions read their arguments, answers come with proofs,",
+            "files are searched for keys that mean nothing.",
             "",
             *table(before, after),
             "",

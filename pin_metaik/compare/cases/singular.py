@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.compare.case import Case, NoTask, Task
+from pin_metaik.compare.cases.case import Case, NoTask, Task
 from pin_metaik.compare.cases.jacobians import jacobians
 from pin_metaik.kinematics import Chain
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pin_metaik.compare.method import Method
+from pin_metaik.compare.methods.method import Method
 from pin_metaik.compare.methods.peers import PEERS
 from pin_metaik.compare.methods.solvers import Default, Rounds, Search
 from pin_metaik.ik import REFINERS

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
-from pin_metaik.compare.cost import price_of, steps_within
-from pin_metaik.compare.method import Answer
-from pin_metaik.compare.methods.priced import Priced
+from pin_metaik.compare.methods.cost import evaluations_of, steps_within
+from pin_metaik.compare.methods.counted import Counted
+from pin_metaik.compare.methods.method import Answer
 from pin_metaik.ik import IKProblem, IKResult, IKSolver, IKStatus, Refiner, solve_ik
 from pin_metaik.ik.ledger import Ledger
 from pin_metaik.ik.refine import make_refiner
@@ -41,7 +41,7 @@ class Search:
     @cached_property
     def solver(self) -> IKSolver:
         """The solver, but for its budget."""
-        refiner = None if self.refiner is None else Priced(make_refiner(self.refiner))
+        refiner = None if self.refiner is None else Counted(make_refiner(self.refiner))
         return IKSolver(self.seeder, refiner, starts=self.starts, trace=refiner is None)
 
     @checked
@@ -70,7 +70,7 @@ class Default:
             return Answer(x0, False, 0, str(IKStatus.OUT_OF_TOLERANCE))
         solver = IKSolver(budget=Budget(evaluations=steps), select=self.select)
         found = answer(solve_ik(chain, problem.targets[0], chain.q(x0), solver=solver, world=problem.world, rng=rng))
-        return replace(found, evaluations=price_of(found.evaluations or 0))
+        return replace(found, evaluations=evaluations_of(found.evaluations or 0))
 
 
 @dataclass(frozen=True)
@@ -99,12 +99,12 @@ class Rounds:
 
     def solve(self, problem: IKProblem, x0: NDArray[np.float64], budget: int, rng: np.random.Generator) -> Answer:
         """Search within the budget."""
-        refiner = Priced(make_refiner(self.refiner))
+        refiner = Counted(make_refiner(self.refiner))
         ledger = Ledger(problem, Budget(evaluations=budget), perf_counter(), x0)
         seeds: NDArray[np.float64] | None = x0[None]
         while not ledger.over() and problem.gap == 0.0:
-            allowed = Budget(evaluations=min(self.round, ledger.left()), target=problem.good_enough)
-            found = minimize(problem.costs, problem.box, self.seeder, allowed, rng, seeds=seeds, keep=ELITE)
+            budget_of_round = Budget(evaluations=min(self.round, ledger.left()), target=problem.good_enough)
+            found = minimize(problem.costs, problem.box, self.seeder, budget_of_round, rng, seeds=seeds, keep=ELITE)
             ledger.add_search(found)
             if not ledger.over():
                 ledger.add(refiner.refine(problem, found.elite, ledger.left()))

@@ -10,7 +10,7 @@ from typing import TypeAlias
 import numpy as np
 
 from pin_metaik.arrays import Array
-from pin_metaik.compare.method import Answer
+from pin_metaik.compare.methods.method import Answer
 from pin_metaik.compare.methods.peers.serial_arm import SerialArm
 from pin_metaik.ik import IKProblem
 from pin_metaik.kinematics import Chain
@@ -59,4 +59,4 @@ class Peer:
 @lru_cache(maxsize=16)
 def _loaded(peer: Peer, chain: Chain) -> Solve:
     peer.need()
-    return peer.load(SerialArm.of(chain.model.name, chain))
+    return peer.load(SerialArm.of_chain(chain.model.name, chain))

@@ -42,7 +42,7 @@ class SerialArm:
     upper: NDArray[np.float64]
 
     @classmethod
-    def of(cls, robot: str, chain: Chain) -> SerialArm:
+    def of_chain(cls, robot: str, chain: Chain) -> SerialArm:
         """The arm of a chain with one frame whose joints move one coordinate each."""
         paths = chain.paths
         if len(chain.frames) != 1 or len(paths.joints) != chain.n or (paths.joints[:, 12:] != (1.0, 0.0)).any():

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import importlib
 
-from pin_metaik.compare.case import Case
 from pin_metaik.compare.cases import CASES
-from pin_metaik.compare.method import Method
+from pin_metaik.compare.cases.case import Case
 from pin_metaik.compare.methods import named
+from pin_metaik.compare.methods.method import Method
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.lookup import lookup
 

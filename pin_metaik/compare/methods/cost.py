@@ -18,6 +18,6 @@ def steps_within(budget: int) -> int:
     return 10 * budget // TENTHS
 
 
-def price_of(steps: int) -> int:
-    """Kernel evaluations that so many evaluations with a Jacobian cost, rounded up."""
+def evaluations_of(steps: int) -> int:
+    """Kernel evaluations that a number of evaluations with a Jacobian costs, rounded up."""
     return -(-TENTHS * steps // 10)

@@ -11,7 +11,7 @@ import pinocchio as pin
 from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
 from pin_metaik.collision import CollisionWorld
-from pin_metaik.compare.method import Answer
+from pin_metaik.compare.methods.method import Answer
 from pin_metaik.errors import MetaIKError, UnsupportedJoint
 from pin_metaik.ik import IKProblem, IKStatus, Verdict
 from pin_metaik.kinematics import Chain
