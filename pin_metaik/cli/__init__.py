@@ -13,7 +13,7 @@ from typer.core import TyperGroup
 from pin_metaik import __version__
 from pin_metaik.cli import compare, demo, plan, reproduce, robots, solve, stewart, warm
 from pin_metaik.cli.codes import INTERRUPTED, NONSENSE
-from pin_metaik.cli.many import ManyValues
+from pin_metaik.cli.options import ManyValues
 from pin_metaik.errors import MetaIKError
 
 

@@ -12,7 +12,7 @@ import typer
 from rich.console import Console
 
 from pin_metaik.cli.codes import INTERRUPTED
-from pin_metaik.cli.many import split
+from pin_metaik.cli.options import split
 from pin_metaik.cli.progress import progress_bar
 from pin_metaik.compare import CASES, Suite, write_report
 from pin_metaik.compare import compare as run

@@ -12,7 +12,7 @@ import typer
 from numpy.typing import NDArray
 from rich.console import Console
 
-from pin_metaik.cli.many import split
+from pin_metaik.cli.options import split
 from pin_metaik.cli.start import configuration, turns
 from pin_metaik.cli.versions import print_json
 from pin_metaik.collision import CollisionWorld, load_scene, scene_names

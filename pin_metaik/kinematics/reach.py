@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, ROUNDING, SCALE, SHIFT
 from pin_metaik.kinematics.limits import Limits
-from pin_metaik.kinematics.paths import Paths, matrix_of
+from pin_metaik.kinematics.paths import ChainArrays, matrix_of
 
 DIGITS = 64.0 * float(np.finfo(float).eps)  # of a sum of a few products, for each joint
 SWEEPS = 50
@@ -81,7 +81,7 @@ def misshape(rotation: NDArray[np.float64]) -> float:
     return float(np.linalg.norm(rotation.T @ rotation - np.eye(3)))
 
 
-def reach_of(paths: Paths, limits: Limits, tip: int, oriented: bool) -> Reach:
+def reach_of(paths: ChainArrays, limits: Limits, tip: int, oriented: bool) -> Reach:
     """Bounds for one tip; ``oriented`` says that targets fix all of the orientation, not only the position."""
     links, last, closing = links_of(paths, limits.lower, limits.upper, tip)
     if not links:  # nothing turns: a gantry
@@ -97,7 +97,7 @@ def reach_of(paths: Paths, limits: Limits, tip: int, oriented: bool) -> Reach:
     return Reach(links[0].offset + knots[0] * links[0].axis, end, least, most)
 
 
-def _doubt(paths: Paths, tip: int, links: list[Link], knots: NDArray[np.float64]) -> float:
+def _doubt(paths: ChainArrays, tip: int, links: list[Link], knots: NDArray[np.float64]) -> float:
     """By how much (m) rounding, and placements that are not quite rotations, may change the sum of the links."""
     size = 2.0 * float(np.abs(knots).sum()) + sum(float(np.linalg.norm(link.offset)) + link.slack for link in links)
     rows = [*paths.joints[paths.ends[tip] : paths.ends[tip + 1]], paths.tips[tip]]
@@ -126,7 +126,7 @@ def tightened(links: list[Link], count: int) -> tuple[NDArray[np.float64], NDArr
 
 
 def links_of(
-    paths: Paths, lower: NDArray[np.float64], upper: NDArray[np.float64], tip: int
+    paths: ChainArrays, lower: NDArray[np.float64], upper: NDArray[np.float64], tip: int
 ) -> tuple[list[Link], Link, NDArray[np.float64]]:
     """The link before each rotating joint, the one from the last to the tip, and that one's placement (4, 4).
 

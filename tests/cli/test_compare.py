@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 from pin_metaik.cli import app
-from pin_metaik.cli.many import split, spread
+from pin_metaik.cli.options import split, spread
 from pin_metaik.compare.folder.store import read_rows
 from pin_metaik.errors import MetaIKError
 

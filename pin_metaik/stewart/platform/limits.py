@@ -36,7 +36,7 @@ class JointLimits:
         return min(self.base_angle, self.platform_angle) < pi or self.distance > 0.0
 
     @checked
-    def sockets(self, geometry: Geometry) -> Array:
+    def joint_axes(self, geometry: Geometry) -> Array:
         """Unit axes (2, n, 3) of the joints that begin links and of the platform joints (platform frame).
 
         The first are in the base frame; those at the tip of a horn along the horn, the way it moves, and its axis.

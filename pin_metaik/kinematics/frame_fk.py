@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pin_metaik.kinematics.coordinates import consecutive
 
 
-class Scratch(local):
+class PinocchioData(local):
     """A ``pin.Data`` and, in it, the placement of one frame; one a thread."""
 
     def __init__(self, model: pin.Model, frame: int = 0) -> None:
@@ -19,7 +19,7 @@ class Scratch(local):
         self.placement = self.data.oMf[frame]
 
 
-class Placing:
+class FrameFK:
     """World placements of one frame, by Pinocchio.
 
     They are those of a model of one limb, with the joints on the way to the frame and no other frame: then
@@ -27,7 +27,7 @@ class Placing:
     frame takes 0.5 on an arm and 1 on a humanoid.
 
     Attributes:
-        limb: That model.
+        reduced: That model.
     """
 
     def __init__(self, model: pin.Model, frame: int) -> None:
@@ -35,21 +35,21 @@ class Placing:
         way = sorted(set(model.supports[model.frames[frame].parentJoint]) - {0})
         self._entries: NDArray[np.int64] | slice | None = None
         if any(model.joints[j].nq == 0 for j in way):  # a joint that mimics another, perhaps of another limb
-            self.limb = model
+            self.reduced = model
         else:
-            self.limb, frame = _limb(model, way, frame), 1
+            self.reduced, frame = _reduced(model, way, frame), 1
             joints = [model.joints[j] for j in way]
             entries = np.concatenate([np.arange(joint.idx_q, joint.idx_q + joint.nq) for joint in joints])
             if len(entries) < model.nq:
                 self._entries = consecutive(entries)
         self._frame = frame
-        self._own = Scratch(self.limb, frame)
+        self._own = PinocchioData(self.reduced, frame)
         self._spare: list[pin.Data] = []
 
     def place(self, q: NDArray[np.float64]) -> pin.SE3:
         """At a configuration q (nq,); not to be kept, for it is part of Pinocchio's scratch."""
         own = self._own
-        pin.framesForwardKinematics(self.limb, own.data, q if self._entries is None else q[self._entries])
+        pin.framesForwardKinematics(self.reduced, own.data, q if self._entries is None else q[self._entries])
         return own.placement
 
     def places(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -58,25 +58,25 @@ class Placing:
         Threads that do not live long take turns with ``pin.Data``, which takes a while to make. A list of numbers is
         the quickest way out of Pinocchio.
         """
-        forward, write, limb = pin.framesForwardKinematics, pin.SE3ToXYZQUATtuple, self.limb
+        forward, write, reduced = pin.framesForwardKinematics, pin.SE3ToXYZQUATtuple, self.reduced
         try:
             data = self._spare.pop()
         except IndexError:
-            data = limb.createData()
+            data = reduced.createData()
         placement = data.oMf[self._frame]
         places: list[float] = []
         for one in q if self._entries is None else np.ascontiguousarray(q[:, self._entries]):
-            forward(limb, data, one)
+            forward(reduced, data, one)
             places += write(placement)
         self._spare.append(data)
         return np.array(places, dtype=float).reshape(-1, 7)
 
 
-def _limb(model: pin.Model, way: list[int], frame: int) -> pin.Model:
+def _reduced(model: pin.Model, way: list[int], frame: int) -> pin.Model:
     """A model with the joints on the way, given by id, and the frame."""
-    limb, parent = pin.Model(), 0
+    reduced, parent = pin.Model(), 0
     for j in way:
-        parent = limb.addJoint(parent, model.joints[j], model.jointPlacements[j], model.names[j])
+        parent = reduced.addJoint(parent, model.joints[j], model.jointPlacements[j], model.names[j])
     tip = model.frames[frame]
-    limb.addFrame(pin.Frame(tip.name, parent, 0, tip.placement, tip.type))
-    return limb
+    reduced.addFrame(pin.Frame(tip.name, parent, 0, tip.placement, tip.type))
+    return reduced
