@@ -1,4 +1,4 @@
-"""Where Pinocchio places a frame: the joints that move it, and no others, are computed."""
+"""Forward kinematics of one frame by Pinocchio: only the joints that move the frame are computed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pin_metaik.kinematics.coordinates import consecutive
 
 
 class PinocchioData(local):
-    """A ``pin.Data`` and, in it, the placement of one frame; one a thread."""
+    """A ``pin.Data`` for each thread, and the placement of one frame in it."""
 
     def __init__(self, model: pin.Model, frame: int = 0) -> None:
         self.data = model.createData()
@@ -20,14 +20,14 @@ class PinocchioData(local):
 
 
 class FrameFK:
-    """World placements of one frame, by Pinocchio.
+    """World placements of one frame, by a reduced model.
 
-    They are those of a model of one limb, with the joints on the way to the frame and no other frame: then
-    ``pin.framesForwardKinematics`` has nothing else to do. That takes 0.3 us; to have the joints placed and then the
-    frame takes 0.5 on an arm and 1 on a humanoid.
+    The reduced model has the joints on the way to the frame, and no other frame, so that
+    ``pin.framesForwardKinematics`` computes nothing else: 0.3 us. With the whole model it takes 0.5 us on an arm and
+    1 us on a humanoid.
 
     Attributes:
-        reduced: That model.
+        reduced: The reduced model; the whole model where a joint on the way mimics another.
     """
 
     def __init__(self, model: pin.Model, frame: int) -> None:
@@ -47,16 +47,16 @@ class FrameFK:
         self._spare: list[pin.Data] = []
 
     def place(self, q: NDArray[np.float64]) -> pin.SE3:
-        """At a configuration q (nq,); not to be kept, for it is part of Pinocchio's scratch."""
+        """World placement at a configuration q (nq,): a view into ``pin.Data``, which the next call overwrites."""
         own = self._own
         pin.framesForwardKinematics(self.reduced, own.data, q if self._entries is None else q[self._entries])
         return own.placement
 
     def places(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
-        """At configurations q (k, nq), as positions and quaternions (k, 7).
+        """World placements at configurations q (k, nq), as positions and quaternions (k, 7).
 
-        Threads that do not live long take turns with ``pin.Data``, which takes a while to make. A list of numbers is
-        the quickest way out of Pinocchio.
+        ``pin.Data`` objects are pooled, because short-lived threads would make a new one each. Numbers leave Pinocchio
+        quickest as a list.
         """
         forward, write, reduced = pin.framesForwardKinematics, pin.SE3ToXYZQUATtuple, self.reduced
         try:
