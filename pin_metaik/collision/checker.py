@@ -27,7 +27,7 @@ REACH = 0.1, 0.5, math.inf  # m; how far the nearest pair is looked for, when no
 
 @dataclass(frozen=True, eq=False)
 class Checker:
-    """The pairs of bodies that move against each other, and what is asked of each.
+    """The pairs of moving bodies, and how each is checked.
 
     Attributes:
         solids: All bodies; those that move are numbered first.

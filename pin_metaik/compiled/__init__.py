@@ -51,7 +51,7 @@ PART: dict[str, Any] = {**OPTIONS, "_nrt": False}
 
 
 def inline(function: F) -> F:
-    """A part of a loop: compiled into each loop that calls it, with what is constant there."""
+    """A part of a loop: compiled into each loop that calls it, with the constants of that loop."""
     return cast(F, kept(fastmath=LOOSE, forceinline=True, **PART)(function))
 
 
@@ -66,5 +66,5 @@ def exact(function: F) -> F:
 
 
 def allocating(function: F) -> F:
-    """What makes arrays for a loop, before it begins, or returns parts of them."""
+    """A part that makes arrays for a loop before it begins, or returns views of them."""
     return cast(F, kept(**OPTIONS)(function))

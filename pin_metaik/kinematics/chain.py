@@ -161,7 +161,7 @@ class Chain:
         self._hold(self.configuration(neutral_inside(model) if reference is None else reference))
 
     def _limits(self, motions: dict[int, Motion], drivers: list[int], given: dict[str, tuple[float, float]]) -> Limits:
-        """Limits of the coordinates, with those that somebody gave for them or for joints that follow them."""
+        """Limits of the coordinates, with those of the caller for them or for joints that follow them."""
         model = self.model
         followers = self.movers.difference(drivers)
         alike = {j for j in followers if j in motions and motions[j].rotates and motions[j].scale == 1.0}
@@ -256,7 +256,7 @@ class Chain:
         return self.coordinates.read(self._like("q", q))
 
     def configuration(self, q: ArrayLike) -> NDArray[np.float64]:
-        """A configuration (nq,) somebody gave: checked, and with every joint brought inside its limits.
+        """A configuration (nq,) of the caller: checked, and with every joint brought inside its limits.
 
         Raises:
             InvalidConfiguration: If its length is not nq or an entry is not finite.
@@ -268,7 +268,7 @@ class Chain:
         return np.minimum(np.maximum(self._like("q", q), self._least), self._most)
 
     def _like(self, name: str, q: ArrayLike, shape: tuple[int, ...] | None = None) -> NDArray[np.float64]:
-        """Configurations (..., nq) somebody gave; if a shape is asked for, of that, or one (nq,) for all."""
+        """Configurations (..., nq) of the caller, checked; with a shape, of that shape, or one (nq,) for all."""
         given = array(name, q, "...", self.model.nq, error=InvalidConfiguration, finite=False)
         return given if shape is None or given.ndim == 1 else array(name, given, *shape, error=InvalidConfiguration)
 
@@ -294,7 +294,7 @@ class Chain:
 
     @cached_property
     def form(self) -> NDArray[np.float64]:
-        """What the arm's closed form needs to know of it; no rows, if it has none."""
+        """The parameters of the arm's closed form; no rows, if it has none."""
         return closed_form(self.paths)
 
     @cached_property
@@ -304,7 +304,7 @@ class Chain:
 
     @cached_property
     def nominal_proof(self) -> ClosedFormProof | None:
-        """The same by the closed form that an arm would have whose joints were not off their place by a little."""
+        """The same by the closed form of the nominal arm, of which this one is a slightly displaced copy."""
         if len(self.form):
             return self.form_proof
         nominal = closed_form(self.paths, NOMINAL)

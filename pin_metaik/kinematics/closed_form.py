@@ -1,4 +1,4 @@
-"""Which axes of an arm meet and which are parallel: what a closed form of its inverse kinematics has to know.
+"""The parameters of a closed form of an arm's inverse kinematics: which axes meet and which are parallel.
 
 Two kinds of arms of six turning joints have the same one (see ``kernel.closed_form``): those with a wrist whose three
 axes meet behind two parallel ones, like most industrial arms, and those with three parallel axes and two that meet,

@@ -1,4 +1,4 @@
-"""What a chain reads from a Pinocchio model: ids by name, limits, and which entries of q its coordinates are."""
+"""Data that a chain reads from a Pinocchio model: ids by name, limits, and which entries of q its coordinates are."""
 
 from __future__ import annotations
 

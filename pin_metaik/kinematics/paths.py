@@ -127,7 +127,7 @@ def matrix_of(flat: NDArray[np.float64]) -> NDArray[np.float64]:
 def base_moves(before: ChainArrays, after: ChainArrays) -> NDArray[np.float64] | None:
     """How each tip's path is moved as a whole, (T, 4, 4), if the two differ in nothing but where the paths begin.
 
-    None if they differ in more, or are moved by what is not quite a rotation.
+    None if they differ in more, or if a move is not quite a rotation.
     """
     first = before.ends[:-1]
     rest = np.delete(before.joints, first, axis=0), np.delete(after.joints, first, axis=0)

@@ -112,7 +112,7 @@ class Network:
         return float(np.mean(np.square(error))), gradient
 
     def _given(self, w: Array, X: Array) -> tuple[Array, Array]:
-        """Weights (count,) and inputs (n, inputs) that somebody gave."""
+        """Weights (count,) and inputs (n, inputs) of a caller, checked."""
         return array("w", w, self.count, finite=False), array("X", X, "n", self.inputs, finite=False)
 
     def _layers(self, w: Array) -> list[tuple[Array, Array]]:

@@ -11,7 +11,7 @@ from pin_metaik.kinematics import Chain
 
 SINGULAR = 1e-3  # smallest singular value of the frame's Jacobian (m and rad alike)
 SWEEPS, LARGEST = 30, 0.5  # steps from one start, and the longest (rad or m)
-PATIENCE = 256  # starts in a row without a singularity before there is none
+PATIENCE = 256  # consecutive starts without a singularity after which the arm counts as having none
 
 
 def singular(chain: Chain, count: int, rng: np.random.Generator, pool: int = 64) -> NDArray[np.float64]:

@@ -43,7 +43,7 @@ def environment(command: str) -> dict[str, Any]:
 
 
 def append_environment(folder: Path, command: str) -> None:
-    """Add this process to those that worked on the comparison in a folder."""
+    """Append this process to the list of processes that worked on the comparison in a folder."""
     replace_text(folder / FILE, json.dumps([*read_environment(folder), environment(command)], indent=2) + "\n")
 
 

@@ -26,8 +26,8 @@ class CaseEntry:
     """A case.
 
     Attributes:
-        name: What it is called in rows.
-        spec: What it was asked for by.
+        name: Its name in rows.
+        spec: The name or ``module:object`` by which it was asked for.
         about: How its targets are made.
         success: What counts as one.
     """
@@ -44,9 +44,9 @@ class Manifest:
     """A comparison.
 
     Attributes:
-        robots: What each was asked for by, by the name in rows.
+        robots: The name or path by which each was asked for, by its name in rows.
         cases: The cases by name.
-        methods: What each was asked for by, by name; its name, when it came as an object.
+        methods: The name or ``module:object`` by which each was asked for, by name; its name, if it was an object.
         tasks: Tasks of each case for each robot.
         seeds: Repetitions of each method on each task.
         budget: Kernel evaluations for each target.

@@ -21,7 +21,7 @@ def copy_robots(folder: Path, suite: Suite) -> dict[str, str]:
 
     Args:
         folder: Of the comparison.
-        suite: What is compared; meshes are kept, too, if a case of it has a world.
+        suite: The comparison; meshes are copied, too, if one of its cases has a world.
 
     Returns:
         Paths in the folder by the robots' names.

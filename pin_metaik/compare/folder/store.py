@@ -36,7 +36,7 @@ def check_manifest(folder: Path, manifest: Manifest) -> None:
 
 
 def write_manifest(folder: Path, manifest: Manifest) -> None:
-    """Write down what is compared."""
+    """Write the manifest of a comparison."""
     replace_text(folder / MANIFEST, json.dumps(manifest.to_json(), indent=2) + "\n")
 
 
@@ -44,7 +44,7 @@ def read_manifest(folder: Path) -> Manifest:
     """The comparison of a folder.
 
     Raises:
-        InvalidSetting: The folder holds none, or what it holds is none.
+        InvalidSetting: The folder holds no comparison, or its manifest is damaged.
     """
     path = folder / MANIFEST
     if not path.exists():
@@ -79,7 +79,7 @@ class Appender:
         self._path = folder / ROWS
 
     def __enter__(self) -> Appender:
-        """Cut off what a killed writer left half-written, and open the file."""
+        """Cut off a last line that a killed writer left incomplete, and open the file."""
         self._path.touch()
         with self._path.open("r+b") as file:
             text = file.read()

@@ -27,7 +27,7 @@ class Search:
     """Starts or a metaheuristic, then a refiner, as ``IKSolver`` combines them.
 
     Attributes:
-        name: What it is called.
+        name: Name in tables.
         seeder: A metaheuristic, by name or as an object; ``None``: the given start, then random ones.
         refiner: A refiner, by name or as an object; ``None``: the metaheuristic's best is the answer.
         starts: How many starts without a seeder; ``None``: until the budget is spent.
@@ -56,7 +56,7 @@ class Default:
     """``solve_ik`` as everybody calls it. All of its evaluations are priced as if they came with a Jacobian.
 
     Attributes:
-        name: What it is called.
+        name: Name in tables.
         select: Which solution it shall give: see ``IKSolver``.
     """
 
@@ -77,10 +77,10 @@ class Default:
 class Rounds:
     """Short searches and refinements by turns: a metaheuristic spends a round, its best points are refined, and again.
 
-    ``Search`` gives a metaheuristic a quarter of what is left of the budget: much, where a refiner needs little.
+    ``Search`` gives a metaheuristic a quarter of the remaining budget: much, where a refiner needs little.
 
     Attributes:
-        name: What it is called.
+        name: Name in tables.
         seeder: A metaheuristic, by name or as an object.
         refiner: A refiner, by name or as an object.
         round: Kernel evaluations of one search.

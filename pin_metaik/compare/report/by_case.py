@@ -1,4 +1,4 @@
-"""A section for each case: who solved how much for what, robot by robot, and every method against every other."""
+"""A section for each case: rates and evaluations of each method, robot by robot, and every pair of methods compared."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The first sections of a comparison's report: what was compared, how it ended in short, and who won and lost where."""
+"""The first sections of a comparison's report: a summary, the best and worst methods, and what was compared."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def interval(summary: Summary) -> str:
 
 
 def in_words(p: float) -> str:
-    """A p-value; what is too small for a float is said to be so."""
+    """A p-value; one too small for a float is given as a bound."""
     return f"p = {p:.2g}" if p > 0.0 else "p < 1e-300"
 
 
@@ -58,8 +58,8 @@ def overview(results: Results) -> Section:
     )
     text = (
         "Evaluations are those of the solved trials, processor time that of all. The rank is by evaluations to "
-        "solution on each task, 1 being the best; who did not solve it shares the last place. Where no target can be "
-        "met, solved means that it was said, and all who said so share the first place.",
+        "solution on each task, 1 being the best; methods that did not solve it share the last place. Where no target "
+        "can be met, solved means that the method said so, and all that did share the first place.",
         f"Friedman's test over {test.blocks:,} tasks: chi squared = {test.statistic:.4g}, {in_words(test.p)}.",
     )
     return Section("In short", text, (table,), distributions(results))
@@ -85,7 +85,7 @@ def distributions(results: Results, name: str = "ecdf") -> tuple[Figure, ...]:
 
 
 def winners(results: Results) -> Section:
-    """Who won and who lost, by case and robot."""
+    """The best and the worst methods, by case and robot."""
     rows: list[tuple[Value, ...]] = []
     for case in results.cases:
         for robot in results.robots:
@@ -122,7 +122,7 @@ def winners(results: Results) -> Section:
 
 
 def reading(results: Results) -> Section:
-    """What was compared and what the words mean."""
+    """The methods, cases and budgets compared, and the meaning of the terms."""
     manifest = results.manifest
     sizes = (
         f"{len(results.methods)} methods on {len(results.cases)} cases and {len(results.robots)} robots "

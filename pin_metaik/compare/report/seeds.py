@@ -56,7 +56,7 @@ def seeds_against_restarts(results: Results) -> Section | None:
 
 
 def verdict(pair: Pair) -> str:
-    """Who is better, if anybody can tell."""
+    """The better of seeds and restarts, if the difference is significant."""
     if not pair.significant:
         return "-"
     return "seeds" if pair.better > pair.worse else RESTARTS

@@ -24,7 +24,7 @@ PENALTY = 10.0  # an unsolved trial costs this many times its budget ("PAR10")
 
 @dataclass(frozen=True)
 class Summary:
-    """What became of some trials.
+    """Counts and quantiles of some trials.
 
     Attributes:
         trials: How many.
@@ -114,7 +114,7 @@ class Results:
         """Costs (b, k) of the methods that can be ranked, on every task of a case that all of them tried.
 
         A trial costs its evaluations, at least 1, if it solved the task, otherwise ten times its budget; a right
-        UNREACHABLE costs 1, as what is spent beside it goes into the nearest pose. Several seeds are taken together by
+        UNREACHABLE costs 1, as its evaluations are spent on the nearest pose. Several seeds are taken together by
         the geometric mean.
         """
         if (case, robot) not in self._costs:
@@ -174,7 +174,7 @@ def read_results(folder: Path) -> Results:
 
 
 def cost(trial: Trial) -> float:
-    """What a trial costs: its evaluations, or ten times its budget; a right UNREACHABLE costs 1."""
+    """Cost of a trial: its evaluations, or ten times its budget if it failed; 1 for a right UNREACHABLE."""
     if trial.solved and trial.status == IKStatus.UNREACHABLE:
         return 1.0
     if trial.solved and trial.evaluations is not None:
@@ -184,7 +184,7 @@ def cost(trial: Trial) -> float:
 
 @checked
 def summarise(trials: Sequence[Trial]) -> Summary:
-    """What became of these trials."""
+    """Counts and quantiles of these trials."""
     solved = [trial for trial in trials if trial.solved]
     return Summary(
         trials=len(trials),

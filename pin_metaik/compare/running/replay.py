@@ -1,4 +1,4 @@
-"""One trial of a comparison again: what was asked, what came out, and whether that is what its row says."""
+"""One trial of a comparison again: its task, its answer, and whether the answer equals its row."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class Replay:
     """A trial that was run again.
 
     Attributes:
-        trial: What came out.
-        row: What its row says; None if it has none yet.
-        task: What was asked; None if the case could not draw it: the trial has the error.
+        trial: The new row.
+        row: The stored row; None if there is none yet.
+        task: The task; None if the case could not draw it: the trial has the error.
     """
 
     trial: Trial
@@ -39,7 +39,7 @@ class Replay:
         return self.row is None or self.row.reproducible == self.trial.reproducible
 
     def lines(self) -> Iterator[str]:
-        """What to show."""
+        """Lines to print."""
         trial = self.trial
         yield trial.name
         yield from self._asked()
@@ -57,7 +57,7 @@ class Replay:
             yield "as its row says" if self.same else f"its row differs: {self.row}"
 
     def _asked(self) -> Iterator[str]:
-        """The poses of the task, and what they were made from."""
+        """The poses of the task, and the coordinates that they were made from."""
         if self.task is None:
             return
         poses = self.task.targets
@@ -80,7 +80,7 @@ def replay(folder: Path, name: str) -> Replay:
         name: ``robot/case/task/method/seed``.
 
     Raises:
-        InvalidSetting: The folder holds no comparison, the name is none, or the comparison has no such trial.
+        InvalidSetting: The folder holds no comparison, the name is malformed, or the comparison has no such trial.
         UnknownName: The comparison has no such robot, case or method.
     """
     manifest = read_manifest(folder)
@@ -121,7 +121,7 @@ def replay(folder: Path, name: str) -> Replay:
 def _task(item: WorkItem) -> Task | None:
     try:
         return item.draw()
-    except Exception:  # of a case of anybody's; the trial says which
+    except Exception:  # raised by a user's case; the trial has it
         return None
 
 

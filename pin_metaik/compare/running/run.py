@@ -88,7 +88,7 @@ def compare(
     command: str = "pin_metaik.compare.compare(...)",
     watch: Watch | None = None,
 ) -> Outcome:
-    """Run a comparison, or what is left of it, into a folder. Ctrl-C, or worse, loses none of the finished tasks.
+    """Run a comparison, or the rest of it, into a folder. Ctrl-C, or a kill, loses none of the finished tasks.
 
     Rows, but for their times, depend neither on ``jobs`` nor on the backend nor on interruptions. A case that a robot
     has no task of is left out, and the outcome says so.
@@ -104,7 +104,7 @@ def compare(
 
     Raises:
         MissingExtra: joblib, pyarrow or distributed are not installed.
-        InvalidSetting: The folder holds another comparison, another process works on it, jobs are none, or the
+        InvalidSetting: The folder holds another comparison, another process works on it, ``jobs`` is 0, or the
             scheduler cannot be reached.
         CannotWrite: The folder cannot be made or written into.
         NoTask: No robot has a task of any of the cases.

@@ -1,1 +1,1 @@
-"""What a trial is: the comparison it belongs to, the work item that holds it, the processes that run it, its row."""
+"""Trials: the comparison they belong to, the work items that hold them, the processes that run them, their rows."""

@@ -1,4 +1,4 @@
-"""Cases and methods by their names, by ``module:object``, or as they are."""
+"""Cases and methods by name, by ``module:object``, or given as objects."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is compared: robots, cases and methods, how many tasks and seeds, and the budget of each target."""
+"""A comparison: robots, cases and methods, how many tasks and seeds, and the budget of each target."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ class Suite:
     """A comparison.
 
     Attributes:
-        robots: What ``load_robot`` takes.
+        robots: Names or paths, as ``load_robot`` takes them.
         cases: Names, ``"module:object"``, or cases themselves.
         methods: Names, ``"module:object"``, or methods themselves.
         tasks: Tasks of each case for each robot.
         seeds: Repetitions of each method on each task.
         budget: Kernel evaluations for each target.
         rng: Seed of everything random.
-        robots_by_name: What ``load_robot`` takes, by the robots' names.
+        robots_by_name: The same, by the robots' names.
         cases_by_name: The cases by name.
         methods_by_name: The methods by name.
 
@@ -73,7 +73,7 @@ class Suite:
         return pairs * len(self.methods_by_name) * self.tasks * self.seeds
 
     def absent(self) -> dict[str, str]:
-        """Why a robot has no task of a case, by ``robot/case``; of those that have some, nothing."""
+        """Why a robot has no task of a case, by ``robot/case``; pairs that have tasks are left out."""
         found = {}
         for (robot, spec), case in itertools.product(self.robots_by_name.items(), self.cases_by_name.values()):
             reason = case.lacks(load_robot(spec), generator(self.rng, robot, case.name))
@@ -100,7 +100,7 @@ class Suite:
 
 
 def pair_name(robot: str, case: str) -> str:
-    """What a case of a robot is called."""
+    """Name of a pair of robot and case."""
     return f"{robot}/{case}"
 
 

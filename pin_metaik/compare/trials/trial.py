@@ -69,12 +69,12 @@ class Trial:
 
     @property
     def key(self) -> tuple[str, str, str, int, int]:
-        """What names it."""
+        """Its identity."""
         return self.robot, self.case, self.method, self.task, self.seed
 
     @property
     def name(self) -> str:
-        """What names it, as one word that ``pin-metaik replay`` takes."""
+        """Its identity as one word that ``pin-metaik replay`` takes."""
         return f"{self.robot}/{self.case}/{self.task}/{self.method}/{self.seed}"
 
     @property
@@ -89,7 +89,7 @@ class Trial:
     @staticmethod
     @checked
     def from_row(row: Mapping[str, Any]) -> Trial:
-        """What ``row`` made, read back from JSON."""
+        """A trial from a row read back from JSON."""
         fields = Trial.__dataclass_fields__
         if wrong := fields.keys() ^ row.keys():
             raise InvalidSetting(f"a row of a comparison has the keys {', '.join(fields)}, and {min(wrong)!r} differs")
@@ -108,7 +108,7 @@ def generator(rng: int, *path: str | int) -> np.random.Generator:
 
 
 def attempt(robot: str, case: Case, task: Task, method: Method, number: int, seed: int, budget: int, rng: int) -> Trial:
-    """Let a method try the task of a number. What it raises becomes a row; ``KeyboardInterrupt`` is raised.
+    """Let a method try the task of a number. An exception becomes a row; ``KeyboardInterrupt`` is raised.
 
     All methods start a repetition from the same coordinates.
     """
@@ -126,12 +126,12 @@ def attempt(robot: str, case: Case, task: Task, method: Method, number: int, see
         seconds = process_time() - began
         verdicts = [problem.verdict(task.chain.q(a.x)) for problem, a in zip(problems, answers, strict=True)]
         return _judged(row, case, task, Attempt(start, answers, verdicts), _curve(answers, budget), seconds)
-    except Exception as error:  # a method, or a case, of anybody: the others go on
+    except Exception as error:  # raised by a user's method or case: the others go on
         return failed(row, error, process_time() - began)
 
 
 def _answered(method: Method, problem: IKProblem, x: Array, budget: int, rng: np.random.Generator) -> Answer:
-    """What a method says; while that collides, it gets random starts and what is left of the budget to find another."""
+    """A method's answer; while it collides, the method is called again from a random start within the budget."""
     answer = method.solve(problem, x.copy(), budget, rng)
     spent = answer.evaluations
     while spent is not None and spent < budget and problem.verdict(problem.chain.q(answer.x)).collides:

@@ -1,4 +1,4 @@
-"""What is handed to a worker: one task of a comparison, and the methods that are run on it."""
+"""Work items, which processes are given: one task of a comparison, and the methods that are run on it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class WorkItem:
 
     Attributes:
         robot: Name of the robot.
-        spec: What ``load_robot`` takes.
+        spec: Its name or path, as ``load_robot`` takes it.
         case: The case.
         number: Number of the task.
         runs: Methods and numbers of the repetitions.
@@ -46,7 +46,7 @@ class WorkItem:
         """Run the trials; a case that cannot draw its task is an error in each of their rows.
 
         Raises:
-            KeyboardInterrupt: Ctrl-C, also where a method has swallowed it: what it answered then is no row.
+            KeyboardInterrupt: Ctrl-C, also where a method has swallowed it: its answer is then no row.
         """
         with Pressed() as pressed:
             return self._rows(pressed)

@@ -1,4 +1,4 @@
-"""What the legs allow: how far they move, the angles of their joints, and the distance they keep from each other."""
+"""Limits of the legs: their travel, the angles of their joints, and their distance from each other."""
 
 from __future__ import annotations
 
@@ -157,7 +157,7 @@ class ServoLimits(JointLimits):
         speed: How fast a servo can turn, rad/s; None: that is not looked at.
 
     Raises:
-        InvalidGeometry: Angles that are none or in the wrong order, or a limit out of its range.
+        InvalidGeometry: Angles that are no numbers or in the wrong order, or a limit out of its range.
     """
 
     lowest: float

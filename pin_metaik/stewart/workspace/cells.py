@@ -1,4 +1,4 @@
-"""A grid with its ranges settled: the poses to look at, within the box of what a platform's limits leave."""
+"""A grid with its ranges settled: the poses to judge, within the box that a platform's limits leave."""
 
 from __future__ import annotations
 

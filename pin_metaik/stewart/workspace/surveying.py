@@ -1,4 +1,4 @@
-"""Judging the poses of a grid, slab by slab, and of finer ones until enough cells carry what is said of a workspace."""
+"""Judging the poses of a grid, slab by slab, and of finer grids until enough cells carry the figures of a workspace."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def survey(
         limits: What its legs allow.
         grid: Where to look; default: as far as the limits leave room, level, in 40 x 40 x 40 cells.
         dexterity: How to measure nu.
-        watch: Called with cells done and in all as it goes; True ends it, and ``complete`` is False.
+        watch: Called with cells done and in all; True ends the survey, and ``complete`` is False.
 
     Raises:
         EmptyWorkspace: No pose of the grid is within the limits; it says whether that is proved for all between them.

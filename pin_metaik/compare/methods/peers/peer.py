@@ -1,4 +1,4 @@
-"""Somebody else's solver as a method: it is given a serial arm, poses and starts, and the same budget."""
+"""Another library's solver as a method: it is given a serial arm, poses and starts, and the same budget."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Peer:
     """A solver of another package.
 
     Attributes:
-        name: What it is called.
+        name: Name in tables.
         module: What must be importable.
         extra: The extra of this package that brings it.
         load: The solver for an arm. Called once for each arm, and not timed.
