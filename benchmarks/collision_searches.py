@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import pin_metaik as mik
-from pin_metaik.ik.clear import ClearSearch
-from pin_metaik.ik.ledger import Ledger
-from pin_metaik.ik.push import Push
-from pin_metaik.ik.target import TargetLike
+from pin_metaik.ik.clearance.qp import Push
+from pin_metaik.ik.clearance.search import ClearSearch
+from pin_metaik.ik.goals.pose import TargetLike
+from pin_metaik.ik.state import SearchState
 from pin_metaik.optimize import make
 
 
@@ -67,13 +67,13 @@ def _begun(
 ) -> tuple[ClearSearch, NDArray[np.float64]]:
     problem = mik.IKProblem.of(chain, target, world)
     x = mik.solve_ik(chain, target).x
-    ledger = Ledger(problem, mik.Budget(evaluations=evaluations), 0.0, x)
-    return ClearSearch(problem, world, chain.reference, ledger, seed), x
+    state = SearchState(problem, mik.Budget(evaluations=evaluations), 0.0, x)
+    return ClearSearch(problem, chain.reference, state, mik.DLS().descent(), seed), x
 
 
 def _ended(search: ClearSearch, x: NDArray[np.float64], free: NDArray[np.float64] | None) -> Outcome:
     chain = search.problem.chain
-    return Outcome(free is not None, chain.q(x if free is None else free), search.ledger.spent)
+    return Outcome(free is not None, chain.q(x if free is None else free), search.state.spent)
 
 
 SEARCHES: dict[str, Search] = {

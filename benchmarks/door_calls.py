@@ -73,6 +73,11 @@ def problem() -> mik.IKProblem:
 
 
 @cache
+def placed() -> mik.goals.Placed:
+    return mik.goals.Placed(chain(), chain().reference)
+
+
+@cache
 def table() -> robots.DHTable:
     return robots.DHTable("arm", "standard", (robots.DHRow(a=1.0), robots.DHRow(a=1.0)))
 
@@ -383,6 +388,7 @@ PATIENT = {"evaluations", "iterations", "budget", "targets", "seeds", "samples",
 CALLS: dict[str, Callable[[], Arguments]] = {
     # mik
     "mik.DLS": lambda: {"damping": 0.005, "iterations": 100},
+    "mik.DLS.descent": dict,
     "mik.DLS.refine": refining,
     "mik.DLS.refine_anywhere": refining,
     "mik.DLS.settle": lambda: {"problem": problem(), "x": np.array(X6), "evaluations": 50},
@@ -483,7 +489,8 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "patience": 1_000,
         "trace": False,
     },
-    "mik.IKSolver.solve": lambda: {"problem": problem(), "q0": X6, "rng": 0, "first": None},
+    "mik.IKSolver.solve": lambda: {"problem": problem(), "q0": X6, "rng": 0},
+    "mik.IKSolver.search": lambda: {"problem": problem(), "q0": X6, "rng": 0, "first": None},
     "mik.Limits": lambda: dict(LIMITS),
     "mik.Limits.bound": lambda: {
         "leader": "elbow_joint",
@@ -495,6 +502,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.Limits.one_turn": dict,
     "mik.Limits.clip": lambda: {"x": np.array(X6)},
     "mik.Limits.nearest_turns": lambda: {"x": np.array(X6), "x0": np.array(X6)},
+    "mik.Limits.separation": lambda: {"a": np.array(X6), "b": np.array(X6)},
     "mik.Limits.way": lambda: {"a": np.array(X6), "b": np.array(X6)},
     "mik.Limits.contains": lambda: {"x": np.array(X6), "tolerance": 0.0},
     "mik.Limits.replace": lambda: {"limits": {"elbow_joint": (-1.0, 1.0)}},
@@ -516,6 +524,8 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.Target.at": lambda: {"xyz": (0.3, 0.3, 0.4), "frame": None, "tolerance": 1e-5},
     "mik.Target.facing": lambda: {"rotation": np.eye(3), "frame": None, "tolerance": 1e-5},
     "mik.Target.of": lambda: {"target": POSE},
+    "mik.Target.residual": lambda: {"at": placed()},
+    "mik.Target.met": lambda: {"at": placed()},
     "mik.Target.judge": lambda: {"placement": POSE},
     "mik.load_robot": lambda: {"name": "rv7fl", "parameters": None, "free_flyer": False, "mimic": True},
     "mik.minimize": lambda: {
@@ -544,6 +554,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "q0": X6,
         "limit": 4,
         "apart": 0.01,
+        "solver": None,
         "budget": FEW,
         "world": None,
         "rng": 0,

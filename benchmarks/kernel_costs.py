@@ -63,7 +63,7 @@ def measured(robot: str, loops: Sequence[Callable[..., None]]) -> list[float]:
     for _ in range(ROUNDS):  # in turn: a busy moment hits both
         for which, run in enumerate(loops):
             began = time.perf_counter_ns()
-            run(*chain.paths.arrays, problem.tasks, X, np.empty(COUNT), *scratch)
+            run(*chain.paths.arrays, problem.records, X, np.empty(COUNT), *scratch)
             best[which] = min(best[which], (time.perf_counter_ns() - began) / COUNT)
     return best
 

@@ -75,7 +75,7 @@ NONSENSE: dict[str, Callable[[mik.Robot, mik.Chain], Any]] = {
         chain, PANDA_POSE, solver="gwo"
     ),
     r"budget: expected a Budget \(e.g. mik.Budget\(": lambda robot, chain: mik.IKSolver(budget=1000),
-    "select: expected a text": lambda robot, chain: mik.IKSolver(select=lambda q: 0.0),
+    "select: expected": lambda robot, chain: mik.IKSolver(select=3),
     r"obstacles: .* each entry an Obstacle": lambda robot, chain: mik.CollisionWorld(robot, [{"box": 1}]),
     r"budget: expected a Budget": lambda robot, chain: mik.minimize(np.sum, mik.Box([0], [1]), "mtde", 2000),
     r"box: expected a Box \(e.g. mik.Box\(lower, upper\), the box of a search": lambda robot, chain: mik.minimize(

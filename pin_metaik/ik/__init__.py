@@ -1,6 +1,8 @@
 """Inverse kinematics: targets, problems, solvers, refiners and results."""
 
+from pin_metaik.ik import goals
 from pin_metaik.ik.batch import IKBatch, solve_ik_batch
+from pin_metaik.ik.goals.pose import Target
 from pin_metaik.ik.path import IKPath, solve_ik_path
 from pin_metaik.ik.problem import IKProblem, Verdict
 from pin_metaik.ik.proof import Proof
@@ -9,7 +11,6 @@ from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solutions import IKSolutions, solve_ik_all
 from pin_metaik.ik.solve import solve_ik
 from pin_metaik.ik.solver import IKSolver
-from pin_metaik.ik.target import Target
 
 __all__ = [
     "DLS",
@@ -26,6 +27,7 @@ __all__ = [
     "Refiner",
     "Target",
     "Verdict",
+    "goals",
     "solve_ik",
     "solve_ik_all",
     "solve_ik_batch",

@@ -16,13 +16,13 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import array, instance
 from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.errors import InvalidConfiguration, InvalidTarget
+from pin_metaik.ik.goals.pose import Target, TargetLike
 from pin_metaik.ik.problem import check_world
 from pin_metaik.ik.result import IKResult, IKStatus
-from pin_metaik.ik.sharing import share_out, slices
 from pin_metaik.ik.solve import solve_ik
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
 from pin_metaik.ik.starts import drawn
-from pin_metaik.ik.target import Target, TargetLike
+from pin_metaik.ik.threads import run_parallel, slices
 from pin_metaik.kinematics import RESTARTS, Chain
 from pin_metaik.kinematics.kernel.layout import ANGLE, DISTANCE, WITHOUT_BRANCH
 from pin_metaik.optimize.settings import whole
@@ -183,9 +183,9 @@ def solve_ik_batch(
                 _judge(batch, goals, settings[DISTANCE : ANGLE + 1], part)
                 count.add(int(batch.success[part].sum()))
 
-            share_out(together, _parts(chain, bases, workers), workers)
+            run_parallel(together, _parts(chain, bases, workers), workers)
             left = np.flatnonzero(~batch.success).tolist()
-        share_out(alone, left, workers)
+        run_parallel(alone, left, workers)
     except Stopped:
         batch.status[~batch.success & (batch.status == IKStatus.SOLVED)] = IKStatus.STOPPED
     return replace(batch, seconds=perf_counter() - began)

@@ -12,16 +12,19 @@ from numpy.typing import NDArray
 from pin_metaik.arrays import Array
 from pin_metaik.dexterity import singular_values
 from pin_metaik.ik.exclude import Exclusion
-from pin_metaik.ik.gather import SETTINGS, VAIN, VAIN_EACH, gather
-from pin_metaik.ik.ledger import Ledger
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
+from pin_metaik.ik.refine.descent import Descent
 from pin_metaik.ik.starts import drawn
+from pin_metaik.ik.state import SearchState
+from pin_metaik.kinematics.kernel.layout import SLACK, WEIGHT
 from pin_metaik.kinematics.proofs.boxes import Boxes
 from pin_metaik.optimize import Budget
 from pin_metaik.randomness import Rng
 from pin_metaik.watching import Progress, Stopped, Watch, tell
 
+VAIN = 60  # consecutive starts without a new solution ...
+VAIN_EACH = 15  # ... and as many more for each solution known, before a search for others ends
 BATCH = 128  # starts between two looks at what came of them
 MIDDLE = 5000  # evaluations for a solution in the middle of loose tolerances before all of them is aimed at
 ROOM = 0.1  # of the distance between distinct solutions: tolerances that may move a solution so far
@@ -30,11 +33,18 @@ COVERED = 4_096  # boxes that a cover may keep; more are a curve of solutions
 FINEST, FINER = 1e-7, 2_000  # rad or m, boxes: how closely a kept box without a solution is looked at
 EXACT = 1e-9  # m and rad
 SINGULAR = 1e-6  # least singular value of a Jacobian below which a solution counts as one of a curve
-TURN = 2.0 * np.pi
 
 
 def collect(
-    problem: IKProblem, x0: Array, rng: Rng, *, limit: int, apart: float, budget: Budget, watch: Watch | None = None
+    problem: IKProblem,
+    x0: Array,
+    descent: Descent,
+    rng: Rng,
+    *,
+    limit: int,
+    apart: float,
+    budget: Budget,
+    watch: Watch | None = None,
 ) -> tuple[IKProblem, Array, Proof | None, int]:
     """Distinct solutions (s, n), what proves that they are all, and the evaluations spent.
 
@@ -43,14 +53,16 @@ def collect(
     Raises:
         Stopped: The watch says so; its ``result`` is the solutions so far and the evaluations spent.
     """
-    middle = Collection(problem, x0, rng, limit, apart, budget, watch)
-    middle.run()
-    ledger = middle.ledger
-    if middle.known or ledger.over():
-        return problem, middle.solutions, middle.complete, ledger.spent
-    rest = Collection(problem.whole, x0, rng, limit, apart, budget, watch, ledger.spent)
-    rest.run()
-    return problem.whole, rest.solutions, rest.complete, rest.ledger.spent
+    began, spent = perf_counter(), 0
+    for aim in (problem, problem.whole):
+        state = SearchState(aim, budget, began, x0)
+        state.spent = spent
+        collection = Collection(state, descent, rng, limit, apart, watch)
+        collection.run()
+        spent = state.spent
+        if collection.known or state.over():
+            break
+    return aim, collection.solutions, collection.complete, spent
 
 
 class Collection:
@@ -58,29 +70,20 @@ class Collection:
 
     Attributes:
         problem: What is searched for.
-        ledger: What was spent of which budget, and what proves that there is nothing to be found.
+        state: What was spent of which budget, and what proves that there is nothing to be found.
         known: How many solutions there are so far.
         complete: What proves that there are no others, if anything does.
     """
 
     def __init__(
-        self,
-        problem: IKProblem,
-        x0: Array,
-        rng: Rng,
-        limit: int,
-        apart: float,
-        budget: Budget,
-        watch: Watch | None = None,
-        spent: int = 0,
+        self, state: SearchState, descent: Descent, rng: Rng, limit: int, apart: float, watch: Watch | None = None
     ) -> None:
-        """Begin with no solution; x0 (n,) is where to start from, and what its joints keep where they do not matter."""
-        self.problem, self.ledger = problem, Ledger(problem, budget, perf_counter(), x0)
-        self.ledger.spent = spent
+        """Begin with no solution, at the state's coordinates; a joint that does not matter stays where it has it."""
+        self.problem, self.state = state.problem, state
         self.known = 0
         self.complete: Proof | None = None
-        self._x0, self._rng, self._apart, self._watch = x0, rng, apart, watch
-        self._found = np.empty((limit, problem.chain.n))
+        self._x0, self._descent, self._rng, self._apart, self._watch = state.x, descent, rng, apart, watch
+        self._found = np.empty((limit, state.problem.chain.n))
         self._vain = 0
 
     @property
@@ -90,20 +93,20 @@ class Collection:
 
     def run(self) -> None:
         """Search until there is a proof, nothing new appears, or there is no budget or room left."""
-        problem, ledger = self.problem, self.ledger
+        problem, state = self.problem, self.state
         if problem.limits.rigid:
-            self._descend(problem.limits.lower[None], patience=1, branch=False)
+            self._add_from(problem.limits.lower[None], patience=1, branch=False)
             self.complete = Proof.LIMITS
             return
-        self.complete = ledger.proof = problem.refuted
-        if ledger.proof is not None:
+        self.complete = state.proof = problem.refuted
+        if state.proof is not None:
             return
         formed = problem.form_branches
         if formed is not None and self._by_closed_form(formed.boxes):
             return
         self._by_descents()
-        whole = len(problem.targets) == 1 and all(problem.targets[0].counts)
-        if formed is None and whole and problem.chain.n <= len(problem.rows) and not problem.loose:
+        whole = len(problem.targets) == 1 and all(problem.targets[0].counts) and not problem.goals
+        if formed is None and whole and problem.chain.n <= problem.m and not problem.loose:
             self._keep_exact()
             self._by_cover()
 
@@ -121,21 +124,21 @@ class Collection:
         hidden = (exact[:, n:] > 0.5 * self._apart).any()  # by rounding, so near to a singularity: how many there are
         if hidden and any(singular_values(problem.linearize(x)[1])[-1] < SINGULAR for x in starts):
             return False
-        self._descend(starts, len(starts) + 1, branch=False)
+        self._add_from(starts, len(starts) + 1, branch=False)
         if hidden:
             return self.known > 0
         boxes = exact if len(exact) else whole
         missing = boxes[~self._has_solution(boxes)]
-        self._descend(problem.limits.clip(missing[:, :n]), len(missing) + 1, branch=False)
+        self._add_from(problem.limits.clip(missing[:, :n]), len(missing) + 1, branch=False)
         if len(exact) and self._has_solution(exact).all() and not self._roomy:
             self.complete = Proof.CLOSED_FORM
         return self.known > 0
 
     def _by_descents(self) -> None:
         """Descend from near-by configurations of the atlas and from random ones."""
-        problem, ledger = self.problem, self.ledger
-        exclusion = Exclusion(problem, SETTINGS)
-        total = ledger.left()
+        problem, state = self.problem, self.state
+        exclusion = Exclusion(problem, self._descent)
+        total = state.left()
         in_vain = MIDDLE if problem.loose else total - total // 10
         for index in count():
             starts = drawn(problem.chain, self._rng, index, BATCH)
@@ -144,23 +147,17 @@ class Collection:
             if index:
                 self._tell(total)
             enough = VAIN + VAIN_EACH * self.known
-            self._descend(starts, enough - self._vain)
+            self._add_from(starts, enough - self._vain)
             if not self.known:
-                exclusion.go_on(ledger)
-                if ledger.proof is not None:
-                    self.complete = ledger.proof
+                exclusion.go_on(state)
+                if state.proof is not None:
+                    self.complete = state.proof
                     return
-                if ledger.met:
-                    self._descend(ledger.x[None], 1)
+                if state.met:
+                    self._add_from(state.x[None], 1)
             enough = VAIN + VAIN_EACH * self.known
-            hopeless = not self.known and ledger.searched >= in_vain
-            if (
-                self.known == len(self._found)
-                or ledger.left() == 0
-                or ledger.late()
-                or self._vain >= enough
-                or hopeless
-            ):
+            hopeless = not self.known and state.searched >= in_vain
+            if self.known == len(self._found) or state.left() == 0 or state.late() or self._vain >= enough or hopeless:
                 return
 
     def _tell(self, total: int) -> None:
@@ -170,9 +167,9 @@ class Collection:
             Stopped: The watch says so; its ``result`` is the solutions so far and the evaluations spent.
         """
         try:
-            tell(self._watch, Progress(self.ledger.spent, total))
+            tell(self._watch, Progress(self.state.spent, total))
         except Stopped:
-            raise Stopped((self.solutions, self.ledger.spent)) from None
+            raise Stopped((self.solutions, self.state.spent)) from None
 
     def _keep_exact(self) -> None:
         """Take solutions to the pose itself; what comes to the same was within the tolerances, near a singularity."""
@@ -181,10 +178,10 @@ class Collection:
         exactly = IKProblem.of(problem.chain, [target] if target.frame else target)
         others, self.known = [], 0
         for x in found:
-            spent, known, again = gather(
-                exactly, x[None], self._found, self.known, self._apart, 2, self.ledger.left(), branch=False
+            spent, known, again = self._descent.gather(
+                exactly, x[None], self._found, self.known, self._apart, 2, self.state.left(), branch=False
             )
-            self.ledger.spent += spent
+            self.state.spent += spent
             if known == self.known and not again:
                 others.append(x)
             self.known = known
@@ -201,12 +198,12 @@ class Collection:
         boxes = problem.chain._boxes(0, pose, 0.0, 0.0, least=half, split=True)
         if boxes is None:
             return
-        kept = boxes.look(self.ledger.left_for_boxes, COVERED)
-        self.ledger.add_boxes(boxes.looked)
+        kept = boxes.look(self.state.left_for_boxes, COVERED)
+        self.state.add_boxes(boxes.looked)
         if not boxes.done:
             return
         kept = kept[~self._near_solution(kept)]
-        self._descend(problem.limits.clip(kept[:, :n]), len(kept) + 1, branch=False)
+        self._add_from(problem.limits.clip(kept[:, :n]), len(kept) + 1, branch=False)
         if self._are_clear(boxes, kept[~self._near_solution(kept)]):
             self.complete = Proof.BOXES
 
@@ -214,34 +211,32 @@ class Collection:
         """Whether boxes (k, 2 n) that were kept hold nothing distinct from the solutions, when looked at closely."""
         for box in kept:
             part = boxes.within(box, FINEST)
-            small = part.look(min(FINER, self.ledger.left_for_boxes), COVERED)
-            self.ledger.add_boxes(part.looked)
+            small = part.look(min(FINER, self.state.left_for_boxes), COVERED)
+            self.state.add_boxes(part.looked)
             if not part.done or not self._near_solution(small).all():
                 return False
         return True
 
-    def _descend(self, starts: Array, patience: int, *, branch: bool = True) -> None:
+    def _add_from(self, starts: Array, patience: int, *, branch: bool = True) -> None:
         """Descend from each of the starts (s, n), until ``patience`` in a row led to nothing new."""
         if not len(starts):
             return
-        ledger = self.ledger
-        spent, known, row = gather(
-            self.problem, starts, self._found, self.known, self._apart, patience, ledger.left(), branch=branch
+        state = self.state
+        spent, known, row = self._descent.gather(
+            self.problem, starts, self._found, self.known, self._apart, patience, state.left(), branch=branch
         )
         self._vain = self._vain + row if known == self.known else row
-        self.known, ledger.spent = known, ledger.spent + spent
+        self.known, state.spent = known, state.spent + spent
 
     @property
     def _roomy(self) -> bool:
         """Whether the tolerances leave room for solutions as far apart as distinct ones: then there is no end."""
-        slack = self.problem.whole.tasks[:, 12:18]
+        slack = self.problem.whole.records[:, SLACK:WEIGHT]
         return bool((np.abs(slack[np.isfinite(slack)]) > ROOM * self._apart).any())
 
     def _ways(self, boxes: Array) -> Array:
         """(b, s, n) how far each solution is from the centre of each of the boxes (b, 2 n), whole turns aside."""
-        ways = np.abs(boxes[:, None, : self.problem.chain.n] - self.solutions)
-        turns = TURN * np.round(ways / TURN)
-        return np.where(self.problem.limits.winds, np.abs(ways - turns), ways)
+        return self.problem.limits.separation(boxes[:, None, : self.problem.chain.n], self.solutions)
 
     def _has_solution(self, boxes: Array) -> NDArray[np.bool_]:
         """(b,) whether there is a solution in each of the boxes (b, 2 n)."""

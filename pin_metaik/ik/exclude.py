@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
-from pin_metaik.ik.refine import Refiner
+from pin_metaik.ik.refine.descent import Descent
+from pin_metaik.ik.state import ENDLESS, SearchState
 from pin_metaik.kinematics.proofs.boxes import Boxes
 
 FIRST = 500  # evaluations before the first boxes; fewer than 1 of 10,000 random targets with a solution needs more
@@ -27,42 +27,42 @@ class Exclusion:
     descents are slow and near to the target: for these boxes come last.
     """
 
-    def __init__(self, problem: IKProblem, refiner: Refiner) -> None:
+    def __init__(self, problem: IKProblem, descent: Descent) -> None:
         """Begin with all configurations inside the limits."""
-        self._problem, self._refiner = problem.whole, refiner
+        self._problem, self._descent = problem.whole, descent
         frames = range(len(problem.targets))
         self._boxes = [boxes for t in frames if (boxes := problem.boxes(t)) is not None]
 
-    def go_on(self, ledger: Ledger) -> None:
+    def go_on(self, state: SearchState) -> None:
         """Look at the boxes that are due after the evaluations that the search has taken so far."""
         for boxes in self._boxes:
-            self._look(boxes, self._due(ledger) - boxes.looked, ledger)
+            self._look(boxes, self._due(state) - boxes.looked, state)
 
-    def finish(self, ledger: Ledger) -> None:
+    def finish(self, state: SearchState) -> None:
         """Look at all boxes that the budget has left, when the search has come to its end."""
         for boxes in self._boxes:
-            most = ledger.left_for_boxes if ledger.cost < FAR else LAST - boxes.looked
-            self._look(boxes, most, ledger)
+            most = state.left_for_boxes if state.cost < FAR else LAST - boxes.looked
+            self._look(boxes, most, state)
 
-    def _due(self, ledger: Ledger) -> int:
+    def _due(self, state: SearchState) -> int:
         """How many boxes of a frame may have been looked at by now."""
-        searched, far = ledger.searched, ledger.cost > FAR
+        searched, far = state.searched, state.cost > FAR
         due = searched - (HEAD if far else TAIL) if searched >= FIRST else 0
         return TIMES * searched if far and searched >= LONG else due
 
-    def _look(self, boxes: Boxes, most: int, ledger: Ledger) -> None:
+    def _look(self, boxes: Boxes, most: int, state: SearchState) -> None:
         """Look at so many boxes of one frame, and descend from those that are too small to be split."""
         starts, end = 0, min(boxes.looked + most, FEW if boxes.arm.movers >= MANY else ENDLESS)
-        while boxes.looked < end and starts < STARTS and not (boxes.done or ledger.decided or ledger.late()):
+        while boxes.looked < end and starts < STARTS and not (boxes.done or state.decided or state.late()):
             before = boxes.looked
-            small = boxes.look(min(end - before, CHUNK, ledger.left_for_boxes))
-            ledger.add_boxes(boxes.looked - before)
+            small = boxes.look(min(end - before, CHUNK, state.left_for_boxes))
+            state.add_boxes(boxes.looked - before)
             if boxes.excluded:
-                ledger.proof = Proof.BOXES
+                state.proof = Proof.BOXES
             for box in small:
                 starts += 1
-                if len(self._problem.targets) == 1 and ledger.left():
+                if len(self._problem.targets) == 1 and state.left():
                     start = box[None, : self._problem.chain.n]
-                    ledger.add(self._refiner.refine(self._problem, start, ledger.left()))
+                    state.add(self._descent.refine(self._problem, start, state.left()))
             if boxes.looked == before:
                 break

@@ -17,11 +17,11 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import array, checked, shown
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidSetting, InvalidTarget
-from pin_metaik.ik.gather import gather
+from pin_metaik.ik.goals.pose import TargetLike
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
+from pin_metaik.ik.solver import DEFAULT_SOLVER
 from pin_metaik.ik.starts import drawn
-from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.plain import fields_of
 from pin_metaik.randomness import Rng
@@ -187,6 +187,7 @@ def _widened(
         return layer
     found = np.empty((room, problem.chain.n))
     found[: len(layer)] = layer
+    gather = DEFAULT_SOLVER.descent.gather
     _, known, _ = gather(problem, starts, found, len(layer), APART, len(starts) + 1, EVALUATIONS, branch=False)
     if problem.world is not None:
         clear = [problem.accepts(q) for q in problem.chain.q(found[len(layer) : known], base)]

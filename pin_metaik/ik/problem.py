@@ -1,12 +1,12 @@
-"""An inverse-kinematics problem: what is descended (a cost) and what counts (a test)."""
+"""An inverse-kinematics problem: the cost that is descended and the test that counts."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
-from typing import NamedTuple, cast
+from typing import NamedTuple, TypeAlias, cast
 
 import numpy as np
 import pinocchio as pin
@@ -15,14 +15,18 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import array, checked, instance
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSetting, InvalidTarget
+from pin_metaik.ik.goals.goal import Goal, Goals, Placed
+from pin_metaik.ik.goals.pose import ANYWHERE, Target, TargetLike
 from pin_metaik.ik.proof import Proof
-from pin_metaik.ik.target import Target, TargetLike
 from pin_metaik.kinematics import Chain, Limits
 from pin_metaik.kinematics.kernel.layout import ALIGNED, NEAR, SLACK, TURN_WEIGHT, WEIGHT
 from pin_metaik.kinematics.proofs.boxes import TINY, Boxes
 from pin_metaik.kinematics.proofs.closed_forms import Branches
 from pin_metaik.optimize import Box
 from pin_metaik.optimize.settings import few
+
+Asked: TypeAlias = TargetLike | Goal | Sequence[TargetLike | Goal]
+NO_GOALS = Goals()
 
 
 class Verdict(NamedTuple):
@@ -48,49 +52,65 @@ class IKProblem:
     Joints that the chain holds are where its reference has them, but for ``verdict`` and ``accepts``, which judge whole
     configurations; ``problem.at(q)`` is the problem with those joints elsewhere.
 
+    The residual is a sum over goals: those of the targets by compiled loops, then those of ``goals`` in Python.
+
     Attributes:
         chain: The chain.
         targets: One for each of its frames, in the chain's order.
-        tasks: (T, 26) the targets as the kernels take them; a radius as a tolerance is aimed at in its middle.
+        records: (T, 26) the targets as the kernels take them; a radius as a tolerance is aimed at in its middle.
         rows: (m, 2) the (frame, axis) pairs that count: three translations, three rotations, less the free ones.
         world: What must not collide; ``None``: nothing is checked.
+        goals: All other goals.
     """
 
     chain: Chain
     targets: tuple[Target, ...]
-    tasks: NDArray[np.float64]
+    records: NDArray[np.float64]
     rows: NDArray[np.int64]
     world: CollisionWorld | None = None
+    goals: Goals = NO_GOALS
 
     @staticmethod
-    def of(chain: Chain, target: TargetLike | Sequence[TargetLike], world: CollisionWorld | None = None) -> IKProblem:
+    def of(chain: Chain, target: Asked, world: CollisionWorld | None = None) -> IKProblem:
         """Match what somebody asks for to the chain's frames.
 
         Args:
             chain: The chain.
             target: A target for its only frame, or a list with one for each frame: in the chain's order, or each
-                naming its frame.
+                naming its frame; a further target of a frame, and goals of other kinds, may be in the list, too.
             world: What must not collide.
 
         Raises:
-            InvalidTarget: If a target is none, or a frame has none, or more than one.
+            InvalidTarget: If a target is none, a frame has none, or two that name no frame; or if a goal's residual is
+                not (m,) finite numbers.
             FrameNotFound: If a target names a frame that is not the chain's.
             InvalidSetting: If the world's model is not the chain's.
         """
         check_world(chain, world)
-        several = len(chain.frames) > 1 or (
-            isinstance(target, (list, tuple)) and any(isinstance(one, (Target, pin.SE3)) for one in target)
-        )
+        given, goals, listed = _sorted_out(target)
+        several = len(chain.frames) > 1 or listed
         if not several:
-            targets: tuple[Target, ...] = (Target.of(cast(TargetLike, target)),)
-        elif isinstance(target, Target) or not isinstance(target, Sequence):
+            targets: tuple[Target, ...] = (Target.of(cast(TargetLike, given)),)
+        elif isinstance(given, Target) or not isinstance(given, Sequence):
             raise InvalidTarget(f"this chain places {', '.join(chain.frames)}: give a list of targets, one for each")
         else:
-            targets = tuple(Target.of(one) for one in target)
+            targets = tuple(Target.of(one) for one in given)
         if several or targets[0].frame is not None:
-            targets = _match(chain.frames, targets)
-        tasks = targets[0].task[None] if len(targets) == 1 else np.array([one.task for one in targets])
-        return IKProblem(chain, targets, tasks, _rows(tuple([one.counts for one in targets])), world)
+            targets, further = _match(chain.frames, targets, bool(goals))
+            goals = further + goals
+        records = targets[0].record[None] if len(targets) == 1 else np.array([one.record for one in targets])
+        rows = _rows(tuple([one.counts for one in targets]))
+        return IKProblem(chain, targets, records, rows, world, Goals.of(chain, goals) if goals else NO_GOALS)
+
+    @property
+    def asked(self) -> tuple[Goal, ...]:
+        """Everything that is asked: what makes the same problem again."""
+        return tuple(one for one in self.targets if one is not ANYWHERE) + self.goals.each
+
+    @property
+    def m(self) -> int:
+        """Rows of the residual: the axes of the targets that count, and what the other goals have."""
+        return len(self.rows) + sum(self.goals.sizes)
 
     def at(self, q: ArrayLike) -> IKProblem:
         """The same problem, with the joints that the chain holds where q (nq,) has them; see ``Chain.at``."""
@@ -104,7 +124,7 @@ class IKProblem:
         An answer in the middle of the tolerances is a better one, and looked for first. Where the middle is out of
         reach, descents towards it end at a compromise that may be outside; these end inside.
         """
-        return replace(self, tasks=np.array([target.whole_task for target in self.targets]))
+        return replace(self, records=np.array([target.whole_record for target in self.targets]))
 
     @property
     def loose(self) -> bool:
@@ -122,15 +142,19 @@ class IKProblem:
         return self.chain.box
 
     @cached_property
-    def descended(self) -> NDArray[np.int64] | None:
+    def kernel_rows(self) -> NDArray[np.int64] | None:
         """The rows as a descent takes them: None for one frame's whole pose without slack, which it is made for."""
-        whole = len(self.targets) == 1 and not self.tasks[0, SLACK:WEIGHT].any()
+        whole = len(self.targets) == 1 and not self.records[0, SLACK:WEIGHT].any()
         return None if whole else self.rows
 
     @cached_property
-    def good_enough(self) -> float:
-        """A cost that is certainly within every tolerance."""
-        return float(np.min(self.tasks[:, [WEIGHT, TURN_WEIGHT]] * self.tasks[:, [NEAR, ALIGNED]]))
+    def success_cost(self) -> float:
+        """A cost that is certainly within every tolerance; 0 where goals do not tell their tolerances."""
+        return (
+            0.0
+            if self.goals
+            else float(np.min(self.records[:, [WEIGHT, TURN_WEIGHT]] * self.records[:, [NEAR, ALIGNED]]))
+        )
 
     @cached_property
     def gap(self) -> float:
@@ -161,14 +185,35 @@ class IKProblem:
         times the weight. The derivative is Jl^-1(w), the inverse left Jacobian of SO(3), times that; the two are equal
         at the target, and differ by half the angle of w to first order.
         """
-        x = array("x", x, self.chain.n)
-        r, J = np.empty(len(self.rows)), np.empty((self.chain.n, len(self.rows)))
-        self.chain.kernels.linearize(self.chain.bare, self.tasks, self.rows, x, r, J)
+        r, J = np.empty(self.m), np.empty((self.chain.n, self.m))
+        self._evaluator(r, J)(array("x", x, self.chain.n))
         return r, J
+
+    def _evaluator(
+        self, r: NDArray[np.float64], J: NDArray[np.float64]
+    ) -> Callable[[NDArray[np.float64]], tuple[float, bool]]:
+        """A function that writes ``linearize`` at x (n,) into r (m,) and J (n, m), for loops that call it often.
+
+        It returns |r|^2, and whether all goals are within their tolerances.
+        """
+        chain, t = self.chain, len(self.rows)
+        linearize, given = chain.kernels.linearize, (chain.bare, self.records, self.rows)
+        if not self.goals:
+            return lambda x: linearize(*given, x, r, J)
+        placed, slopes = np.empty(t), np.empty((chain.n, t))
+
+        def evaluate(x: NDArray[np.float64]) -> tuple[float, bool]:
+            square, met = linearize(*given, x, placed, slopes)
+            at = Placed(chain, chain.q(x))
+            r[:t], r[t:] = placed, self.goals.residual(at)
+            J[:, :t], J[:, t:] = slopes, self.goals.jacobian(at).T
+            return square + float(r[t:] @ r[t:]), met and self.goals.met(at)
+
+        return evaluate
 
     def branches(self, x0: NDArray[np.float64]) -> NDArray[np.float64]:
         """Coordinates (b, n) that the arm's closed form has for a whole pose, if it has one; see ``Chain.branches``."""
-        if self.descended is not None:
+        if self.kernel_rows is not None:
             return np.empty((0, self.chain.n))
         return self.chain.branches(self.targets[0].pose.homogeneous, x0)
 
@@ -190,8 +235,11 @@ class IKProblem:
 
     @cached_property
     def form_branches(self) -> Branches | None:
-        """The branches of the arm's closed form for all that the target of its whole pose accepts; None without one."""
-        return self.nominal_branches if len(self.chain.form) else None
+        """The branches of the arm's closed form for all that the target of its whole pose accepts; None without one.
+
+        Other goals make a solution of few of them, and have no closed form.
+        """
+        return self.nominal_branches if len(self.chain.form) and not self.goals else None
 
     @cached_property
     def nominal_branches(self) -> Branches | None:
@@ -224,7 +272,7 @@ class IKProblem:
         few("count", count, 0)
         count = int(count)
         out = np.empty((count, self.chain.n))
-        self.chain.kernels.nearest_samples(self.chain.block, self.tasks, out)
+        self.chain.kernels.nearest_samples(self.chain.block, self.records, out)
         return out
 
     def costs(self, X: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -234,7 +282,9 @@ class IKProblem:
         """
         X = array("X", X, "k", self.chain.n, finite=False)
         out = np.empty(len(X))
-        self.chain.kernels.costs(self.chain.bare, self.tasks, X, out)
+        self.chain.kernels.costs(self.chain.bare, self.records, X, out)
+        if self.goals:
+            out += [self.goals.cost(Placed(self.chain, q)) for q in self.chain.q(X)]
         return out
 
     def verdict(self, q: NDArray[np.float64]) -> Verdict:
@@ -247,6 +297,7 @@ class IKProblem:
             position = max(position, judged.position_error)
             orientation = max(orientation, judged.orientation_error)
             accepted = accepted and judged.met
+        accepted = accepted and (not self.goals or self.goals.met(Placed(self.chain, q)))
         collides = accepted and self.world is not None and self.world.checker.collides(q)
         return Verdict(position, orientation, accepted and not collides, collides)
 
@@ -270,18 +321,37 @@ def _rows(counts: tuple[tuple[bool, ...], ...]) -> NDArray[np.int64]:
     return np.ascontiguousarray(np.argwhere(np.array(counts)))
 
 
-def _match(frames: tuple[str, ...], targets: tuple[Target, ...]) -> tuple[Target, ...]:
-    """The targets in the order of the frames."""
+def _sorted_out(asked: Asked) -> tuple[object, tuple[Goal, ...], bool]:
+    """The targets that somebody asks for, the goals of other kinds, and whether the targets are a list of them."""
+    if isinstance(asked, Goal) and not isinstance(asked, Target):
+        return [], (asked,), True
+    kinds = Target, pin.SE3, Goal
+    if not isinstance(asked, (list, tuple)) or not any(isinstance(one, kinds) for one in asked):
+        return asked, (), False
+    others = tuple(one for one in asked if isinstance(one, Goal) and not isinstance(one, Target))
+    return [one for one in asked if isinstance(one, Target) or not isinstance(one, Goal)], others, True
+
+
+def _match(
+    frames: tuple[str, ...], targets: tuple[Target, ...], other_goals: bool
+) -> tuple[tuple[Target, ...], tuple[Target, ...]]:
+    """The targets in the order of the frames, and those that a frame has beyond its first one.
+
+    With goals of other kinds, a frame needs none.
+    """
     if len(targets) == len(frames) and all(target.frame is None for target in targets):
-        return targets
-    by_frame = {}
+        return targets, ()
+    by_frame: dict[str, Target] = {}
+    further: list[Target] = []
     for target in targets:
-        if target.frame is None or target.frame in by_frame:
+        name = frames[0] if target.frame is None and len(frames) == 1 else target.frame
+        if name is None:
             raise InvalidTarget(f"this chain places {', '.join(frames)}: give one target a frame, each naming its own")
-        if target.frame not in frames:
-            raise FrameNotFound(target.frame, frames)
-        by_frame[target.frame] = target
+        if name not in frames:
+            raise FrameNotFound(name, frames)
+        if by_frame.setdefault(name, target) is not target:
+            further.append(target)
     missing = [name for name in frames if name not in by_frame]
-    if missing:
+    if missing and not other_goals:
         raise InvalidTarget(f"no target for {', '.join(missing)}; a chain places all of its frames at once")
-    return tuple(by_frame[name] for name in frames)
+    return tuple(by_frame.get(name, ANYWHERE) for name in frames), tuple(further)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any, TypeAlias, cast
@@ -13,10 +12,9 @@ from numpy.typing import NDArray
 
 from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.dexterity import rank
-from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.problem import Asked, IKProblem
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.reasons import cannot_move, collisions, in_collision, out_of_reach
-from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.plain import fields_of, plain
 
@@ -71,7 +69,7 @@ class IKResult:
     evaluations: int
     seconds: float
     chain: Chain = field(repr=False)
-    given: TargetLike | Sequence[TargetLike] | None = field(repr=False)
+    given: Asked | None = field(repr=False)
     trace: NDArray[np.float64] | None = field(default=None, repr=False)
     world: CollisionWorld | None = field(default=None, repr=False)
     contacts: tuple[Contact, ...] = ()
@@ -80,10 +78,10 @@ class IKResult:
     parts: Parts | None = field(default=None, repr=False)
 
     @property
-    def target(self) -> TargetLike | Sequence[TargetLike]:
+    def target(self) -> Asked:
         """What was asked: a pose as a ``pin.SE3``, anything else as it was given."""
         if self.parts is None:
-            return cast(TargetLike, self.given)
+            return cast(Asked, self.given)
         return cast(pin.SE3, pin.XYZQUATToSE3(self.parts[0] + self.parts[1]))
 
     @property
@@ -137,7 +135,7 @@ class IKResult:
         """How far ``q`` is from the target, and what keeps it from it."""
         still, free = cannot_move(self.problem), [n for n in self.binding if n not in self.chain.limits.stuck]
         stuck = (f"; at a limit: {', '.join(free)}" if free else "") + (f"; {still}" if still else "")
-        asked = len(self.problem.rows)
+        asked = self.problem.m
         lost = f"; {asked - self.rank} of {asked} directions lost there" if self.rank < asked else ""
         away = f"{self.position_error:.3g} m and {self.orientation_error:.3g} rad away"
         return f"the nearest is {away}{stuck}{lost}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 from typing import Any
@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import checked
 from pin_metaik.collision import CollisionWorld
-from pin_metaik.errors import InvalidBudget
+from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.collect import collect
-from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.problem import Asked, IKProblem
 from pin_metaik.ik.proof import Proof
-from pin_metaik.ik.target import TargetLike
+from pin_metaik.ik.solver import APART, DEFAULT_SOLVER, IKSolver
 from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Budget
 from pin_metaik.optimize.settings import few, positive
@@ -73,11 +73,12 @@ class IKSolutions:
 @checked
 def solve_ik_all(
     chain: Chain,
-    target: TargetLike | Sequence[TargetLike],
+    target: Asked,
     q0: ArrayLike | None = None,
     *,
     limit: int = 64,
-    apart: float = 1e-2,
+    apart: float = APART,
+    solver: IKSolver | None = None,
     budget: Budget = DEFAULT_BUDGET,
     world: CollisionWorld | None = None,
     rng: Rng = None,
@@ -97,6 +98,7 @@ def solve_ik_all(
             ones; default: the chain's reference.
         limit: Solutions to stop at; what ends the search on redundant chains.
         apart: rad or m by which some coordinate of two solutions must differ.
+        solver: Whose refiner descends; default ``IKSolver()``. Of a solver, nothing else is used here.
         budget: Evaluations (and seconds, which are not reproducible) that may be spent.
         world: What must not collide: solutions that do are left out, after they have counted towards the limit.
         rng: Seed or generator; ``None`` is a fixed seed.
@@ -105,13 +107,17 @@ def solve_ik_all(
     Raises:
         InvalidTarget: If the target is not a pose, position or orientation.
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
-        InvalidSetting: If ``limit`` or ``apart`` is not above zero, or the world is another model's than the chain.
+        InvalidSetting: If ``limit`` or ``apart`` is not above zero, the solver has no refiner, or the world is another
+            model's than the chain.
         InvalidBudget: If the budget has no limit on evaluations.
     """
     few("limit", limit)
     positive("apart", apart)
     if budget.evaluations is None:
         raise InvalidBudget("collecting solutions needs a budget of evaluations: Budget(evaluations=...)")
+    solver = DEFAULT_SOLVER if solver is None else solver
+    if solver.refiner is None:
+        raise InvalidSetting("all solutions are found by a refiner: give the solver one, e.g. IKSolver(refiner='dls')")
     began = perf_counter()
     chain = chain if q0 is None else chain.at(q0)
     problem = IKProblem.of(chain, target, world)
@@ -119,7 +125,9 @@ def solve_ik_all(
     x0 = chain.x(base)
     interrupted = False
     try:
-        _, found, complete, spent = collect(problem, x0, rng, limit=limit, apart=apart, budget=budget, watch=watch)
+        _, found, complete, spent = collect(
+            problem, x0, solver.descent, rng, limit=limit, apart=apart, budget=budget, watch=watch
+        )
     except Stopped as stop:
         (found, spent), complete, interrupted = stop.result, None, True
     found = chain.limits.nearest_turns(found, x0)

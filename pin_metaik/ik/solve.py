@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import instance
 from pin_metaik.collision import CollisionWorld
-from pin_metaik.ik.avoid import keep_clear
-from pin_metaik.ik.fast import solve_fast
-from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.plain_pose import solve_plain
+from pin_metaik.ik.problem import Asked, IKProblem
 from pin_metaik.ik.result import IKResult
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
-from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.randomness import Rng, as_seed
 
 
 def solve_ik(
     chain: Chain,
-    target: TargetLike | Sequence[TargetLike],
+    target: Asked,
     q0: ArrayLike | None = None,
     *,
     solver: IKSolver | None = None,
@@ -32,14 +28,14 @@ def solve_ik(
     Args:
         chain: The joints to move and the frames to place.
         target: World pose of the chain's frame (``pin.SE3`` or 4x4), a position (3,) in m, a ``Target``, or one
-            ``Target`` for each frame of a chain that has several.
+            ``Target`` for each frame of a chain that has several; or a list with any goals (see ``pin_metaik.goals``).
         q0: (nq,) configuration to start from; joints outside the chain, and locked ones, are where it has them, in the
             search and in the answer. An arm with a closed form stays on the branch that it is on (shoulder, elbow and
             wrist), if that has a solution. Default: the chain's reference.
         solver: How to search; default ``IKSolver()``.
         world: What must not collide: the robot with itself, with what it holds, and with obstacles. Where the
-            solver's solution does, others are searched for, by damped least squares whatever its refiner, then by
-            pushing them out of collision, and by the solver's seeder.
+            solver's solution does, others are searched for with its refiner (damped least squares if it has none), by
+            pushing them out of collision, and by its seeder.
         rng: Seed or generator of every random choice; ``None`` is a fixed seed, so that the same call gives the same
             answer. A generator gives one number as the seed: it is one draw on, however hard the target is.
 
@@ -60,7 +56,7 @@ def solve_ik(
     try:
         if chain.held and q0 is not None:
             chain = chain.at(q0)
-        fast = solve_fast(chain, target, q0, solver, seed)
+        first = solve_plain(chain, target, q0, solver.kernel_settings, seed)
     except (
         AttributeError,
         TypeError,
@@ -68,11 +64,6 @@ def solve_ik(
         instance(Chain, chain=chain)
         instance(IKSolver, solver=solver)
         raise
-    if world is not None:
-        instance(CollisionWorld, world=world)
-    if isinstance(fast, IKResult):
-        result = fast
-    else:
-        choice = None if solver.select == "first" else world  # one chooses among the solutions that are clear
-        result = solver.solve(IKProblem.of(chain, target, choice), q0, seed, first=fast)
-    return result if world is None else keep_clear(result, q0, solver, world, seed)
+    if isinstance(first, IKResult) and world is None:
+        return first
+    return solver._finish(IKProblem.of(chain, target, world), first, q0, seed)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import islice
 from time import perf_counter
@@ -14,21 +14,22 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import checked, instance
-from pin_metaik.errors import InvalidBudget, InvalidSetting, UnknownName
+from pin_metaik.errors import InvalidBudget, InvalidSetting
+from pin_metaik.ik.clearance import keep_clear
 from pin_metaik.ik.collect import collect
+from pin_metaik.ik.criteria import Criterion, Measure, measure_of, slide
 from pin_metaik.ik.exclude import FAR, FIRST, LONG, Exclusion
-from pin_metaik.ik.ledger import ENDLESS, Ledger
-from pin_metaik.ik.nullspace import slide
+from pin_metaik.ik.goals.pose import DEFAULT_TOLERANCE
+from pin_metaik.ik.plain_pose import solve_plain
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine import DLS, Refinement, Refiner, make_refiner
-from pin_metaik.ik.refine.dls import PROGRESS
+from pin_metaik.ik.refine.descent import Descent, descent_of
 from pin_metaik.ik.result import IKResult, IKStatus
-from pin_metaik.ik.select import SELECT
 from pin_metaik.ik.starts import start_batches
-from pin_metaik.ik.target import DEFAULT_TOLERANCE
+from pin_metaik.ik.state import ENDLESS, SearchState
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
 from pin_metaik.optimize.settings import whole
-from pin_metaik.randomness import Rng, as_generator
+from pin_metaik.randomness import Rng, as_generator, as_seed
 
 Refine: TypeAlias = Callable[[IKProblem, NDArray[np.float64], int], Refinement]
 
@@ -38,6 +39,7 @@ SEEDER_SHARE = 0.25  # of the budget, for one round of the seeder before its eli
 RESTART_SHARE = 0.8  # of a search, for restarts before the automatic solver turns to a seeder
 FALLBACK = "mtde"  # ... which is this one
 CHOICE, CHOICE_SHARE = 64, 0.5  # solutions to choose from at most, and the share of the budget to find them
+APART = 1e-2  # rad or m by which some coordinate of two of them differs
 RESERVE = 0.05  # of the budget, to settle down at the nearest pose when none is near enough
 
 
@@ -60,7 +62,8 @@ class IKSolver:
             it stops once the tolerances are met.
         starts: How many starts to refine without a seeder; ``None``: until the budget is spent.
         select: ``"first"`` solution found, or of all distinct ones that the budget allows to find, the ``"nearest"`` to
-            ``q0``, the one of best ``"manipulability"``, or the one that keeps farthest from the ``"limits"``.
+            ``q0``, the one of best ``"manipulability"``, the one that keeps farthest from the ``"limits"``, or the one
+            for which a function of your own, of a configuration q (nq,), gives the lowest number.
         trace: Whether to keep the seeder's convergence.
         patience: Evaluations after which the automatic search ends although nothing is proved, or a tenth of the
             budget, if that is more; the rest of the budget is for boxes (see ``Proof``). Of 13.7 million targets with a
@@ -71,40 +74,78 @@ class IKSolver:
     refiner: str | Refiner | None = "dls"
     budget: Budget = field(default=Budget(evaluations=EVALUATIONS))
     starts: int | None = None
-    select: str = "first"
+    select: str | Criterion = "first"
     trace: bool = False
     patience: int = 25_000
     _seeder: Metaheuristic | None = field(init=False, repr=False)
-    _refiner: Refiner | None = field(init=False, repr=False)
+    _descent: Descent | None = field(init=False, repr=False)
+    _measure: Measure | None = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Check names and settings where they enter.
 
         Raises:
-            UnknownName: No metaheuristic or refiner of that name.
-            InvalidSetting: Neither a seeder nor a refiner, or fewer than one start.
+            UnknownName: No metaheuristic, refiner or criterion of that name.
+            InvalidSetting: Neither a seeder nor a refiner, a choice without a refiner, or fewer than one start.
             InvalidBudget: A budget that never ends.
         """
         seeder = None if self.seeder is None else make(FALLBACK if self.seeder == "auto" else self.seeder)
-        refiner = None if self.refiner is None else make_refiner(self.refiner)
-        if refiner is None and (seeder is None or self.seeder == "auto"):
+        descent = None if self.refiner is None else descent_of(make_refiner(self.refiner))
+        measure = None if self.select == "first" else measure_of(self.select)
+        if descent is None and (seeder is None or self.seeder == "auto"):
             raise InvalidSetting("without a refiner name a seeder, e.g. IKSolver('gwo', None)")
+        if descent is None and measure is not None:
+            raise InvalidSetting("to choose among solutions takes a refiner, e.g. IKSolver('gwo', 'dls', select=...)")
         object.__setattr__(self, "_seeder", seeder)
-        object.__setattr__(self, "_refiner", refiner)
-        if self.select != "first" and self.select not in SELECT:
-            raise UnknownName("selection", self.select, {"first", *SELECT})
+        object.__setattr__(self, "_descent", descent)
+        object.__setattr__(self, "_measure", measure)
         if self.starts is not None and self.starts < 1:
             raise InvalidSetting(f"starts is at least 1 or None, got {self.starts}")
         whole("patience", self.patience, 1)
         if not self.budget.ends:
             raise InvalidBudget("this search might never end: give the budget evaluations=... or seconds=...")
 
-    def solve(
+    @property
+    def descent(self) -> Descent:
+        """How its refiner descends; that of damped least squares for a solver without a refiner."""
+        return DLS().descent() if self._descent is None else self._descent
+
+    @checked
+    def solve(self, problem: IKProblem, q0: ArrayLike | None = None, rng: Rng = None) -> IKResult:
+        """Solve a problem, in its world if it has one: what ``solve_ik`` does, which has the arguments and errors."""
+        problem, seed = problem if q0 is None else problem.at(q0), as_seed(rng)
+        first = None
+        if len(problem.targets) == 1 and not problem.goals:
+            first = solve_plain(problem.chain, problem.targets[0], q0, self.kernel_settings, seed)
+        return self._finish(problem, first, q0, seed)
+
+    def _finish(
+        self, problem: IKProblem, first: IKResult | Refinement | None, q0: ArrayLike | None, seed: int | None
+    ) -> IKResult:
+        """The result of a problem from what ``solve_plain`` came to: search what it left, then keep clear."""
+        if isinstance(first, IKResult):
+            result = first
+        else:  # a choice is made among the solutions that are clear; the first one is cleared
+            aim = problem if self._measure is not None else replace(problem, world=None)
+            result = self.search(aim, q0, seed, first=first)
+        if problem.world is None:
+            return result
+        base = problem.chain.reference if q0 is None else problem.chain.configuration(q0)
+        seeder = make(FALLBACK) if self._seeder is None else self._seeder
+        return keep_clear(result, problem, base, descent=self.descent, seeder=seeder, budget=self.budget, rng=seed)
+
+    def search(
         self, problem: IKProblem, q0: ArrayLike | None = None, rng: Rng = None, *, first: Refinement | None = None
     ) -> IKResult:
-        """Search until the targets are met or the budget is spent; see ``solve_ik`` for the arguments.
+        """Search until the targets are met or the budget is spent, each evaluation being counted.
 
-        ``first`` is what the pose solver came to, if it has tried the first starts already.
+        This is the search alone, as comparisons take it: it ends with a solution that collides in the problem's world.
+
+        Args:
+            problem: What is searched for.
+            q0: (nq,) configuration to start from; see ``solve_ik``.
+            rng: Seed or generator; a generator is drawn from for every start.
+            first: What the pose solver came to, if it has tried the first starts already.
         """
         began = perf_counter()
         instance(IKProblem, problem=problem)
@@ -116,70 +157,72 @@ class IKSolver:
         base = chain.reference if q0 is None else chain.configuration(q0)
         x0 = chain.x(base)
         aim = problem.whole if problem.loose else problem
-        ledger = Ledger(aim, self.budget, began, x0, self._most if self._decides else None)
+        state = SearchState(aim, self.budget, began, x0, self._most if self._decides else None)
         exclusion = None
-        if self._decides and self._refiner is not None:
-            ledger.proof = problem.refuted
-            exclusion = Exclusion(problem, self._refiner) if ledger.proof is None else None
+        if self._decides and self._descent is not None:
+            state.proof = problem.refuted
+            exclusion = Exclusion(problem, self._descent) if state.proof is None else None
         if first is not None:
-            ledger.add(first)
+            state.add(first)
         if chain.limits.rigid:  # there is nothing to search: it stands where it stands
-            ledger.x, ledger.spent = chain.limits.lower, 1
-        if self.select != "first" and not ledger.over():
-            self._choose(problem, x0, base, rng, ledger)
-        if self._refiner is not None and (self.seeder is None or self.seeder == "auto") and not ledger.over():
-            self._restart(problem, self._refiner, x0, rng, ledger, exclusion, tried=0 if first is None else 1)
-        if self._seeder is not None and not ledger.over():
-            self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, ledger)
-        if exclusion is not None and not ledger.decided:
-            exclusion.finish(ledger)
-        if isinstance(self._refiner, DLS) and not ledger.met and self.starts is None and not chain.limits.rigid:
-            ledger.add(self._refiner.settle(ledger.problem, ledger.x, ledger.left()))
+            state.x, state.spent = chain.limits.lower, 1
+        if self._measure is not None and not state.over():
+            self._choose(problem, self._measure, base, rng, state)
+        if self._descent is not None and (self.seeder is None or self.seeder == "auto") and not state.over():
+            self._restart(problem, self._descent, x0, rng, state, exclusion, tried=0 if first is None else 1)
+        if self._seeder is not None and not state.over():
+            self._seed(problem, self._seeder, None if q0 is None else x0[None], rng, state)
+        if exclusion is not None and not state.decided:
+            exclusion.finish(state)
+        if self._descent is not None and not state.met and self.starts is None and not chain.limits.rigid:
+            state.add(self._descent.settle(state.problem, state.x, state.left()))
         q = base.copy()
-        chain.coordinates.write(ledger.x, q)
+        chain.coordinates.write(state.x, q)
         verdict = problem.verdict(q)
-        status = IKStatus.SOLVED if verdict.accepted else IKStatus.IN_COLLISION if verdict.collides else ledger.status
+        status = IKStatus.SOLVED if verdict.accepted else IKStatus.IN_COLLISION if verdict.collides else state.status
         return IKResult(
             q=q,
             status=status,
             position_error=verdict.position_error,
             orientation_error=verdict.orientation_error,
-            evaluations=ledger.spent,
+            evaluations=state.spent,
             seconds=perf_counter() - began,
             chain=chain,
-            given=problem.targets,
-            trace=np.concatenate(ledger.traces) if ledger.traces else None,
+            given=problem.asked,
+            trace=np.concatenate(state.traces) if state.traces else None,
             world=problem.world,
-            proof=None if verdict.accepted or verdict.collides else ledger.proof,
+            proof=None if verdict.accepted or verdict.collides else state.proof,
             contacts=problem.world.checker.contacts(q) if verdict.collides and problem.world else (),
         )
 
     def _choose(
-        self, problem: IKProblem, x0: NDArray[np.float64], base: NDArray[np.float64], rng: Rng, ledger: Ledger
+        self, problem: IKProblem, measure: Measure, base: NDArray[np.float64], rng: Rng, state: SearchState
     ) -> None:
-        """Collect distinct solutions and take the best by the chosen measure; on a redundant chain, improve it.
+        """Collect distinct solutions and take the best by a measure; on a redundant chain, improve it.
 
         In a world, colliding solutions are discarded, and so is a null-space improvement that collides.
         """
-        measure = SELECT[self.select]
-        budget = Budget(evaluations=max(1, ledger.left(CHOICE_SHARE)), seconds=self.budget.seconds)
-        problem, found, complete, spent = collect(problem, x0, rng, limit=CHOICE, apart=1e-2, budget=budget)
-        ledger.spent += spent
+        x0 = problem.chain.x(base)
+        budget = Budget(evaluations=max(1, state.left(CHOICE_SHARE)), seconds=self.budget.seconds)
+        problem, found, complete, spent = collect(
+            problem, x0, self.descent, rng, limit=CHOICE, apart=APART, budget=budget
+        )
+        state.spent += spent
         if not len(found) and self._decides:
-            ledger.proof = complete
+            state.proof = complete
         if problem.world is not None:
             found = found[[problem.accepts(q) for q in problem.chain.q(found, base)]]
         if len(found):
             found = problem.limits.nearest_turns(found, x0)
             best = found[np.argmin(measure(problem, found, x0))]
-            better = slide(problem, best, x0, measure)
+            better = slide(problem, best, x0, measure, self.descent)
             kept = problem.world is None or problem.accepts(problem.chain.q(better, base))
-            ledger.x, ledger.met = better if kept else best, True
+            state.x, state.met = better if kept else best, True
 
     @property
     def _decides(self) -> bool:
         """Whether boxes take their turns with the search: they do in the automatic solver's."""
-        return self.seeder == "auto" and self._refiner is not None
+        return self.seeder == "auto" and self._descent is not None
 
     @property
     def _most(self) -> int | None:
@@ -193,22 +236,23 @@ class IKSolver:
 
         That is the automatic solver's: it restarts its refiner until a share of the budget is spent.
         """
-        dls, evaluations = self._refiner, self.budget.evaluations
-        automatic = self.seeder == "auto" and self.select == "first" and self.budget.seconds is None
-        if not automatic or not isinstance(dls, DLS):
+        evaluations = self.budget.evaluations
+        automatic = self.seeder == "auto" and self._measure is None and self.budget.seconds is None
+        if not automatic or self._descent is None:
             return None
         most = ENDLESS if evaluations is None else math.ceil(RESTART_SHARE * evaluations)
         first, few = float(min(LONG, most)), float(min(FIRST, most))
-        tolerance = DEFAULT_TOLERANCE
-        return np.array([dls.damping, PROGRESS, dls.iterations, first, tolerance, tolerance, first, few, FAR**2])
+        settings = self._descent.settings(first)
+        tolerances = [DEFAULT_TOLERANCE, DEFAULT_TOLERANCE]
+        return None if settings is None else np.concatenate([settings, tolerances, [first, few, FAR**2]])
 
     def _restart(
         self,
         problem: IKProblem,
-        refiner: Refiner,
+        descent: Descent,
         x0: NDArray[np.float64],
         rng: Rng,
-        ledger: Ledger,
+        state: SearchState,
         exclusion: Exclusion | None,
         tried: int,
     ) -> None:
@@ -219,31 +263,29 @@ class IKSolver:
         """
         share = 1.0 - RESERVE if self._seeder is None else RESTART_SHARE
         batches = partial(start_batches, problem.chain, x0, rng, self.starts)
-        anywhere = refiner.refine
-        if self._seeder is not None and isinstance(refiner, DLS):
-            anywhere = refiner.refine_anywhere
+        anywhere = descent.refine if self._seeder is None else descent.refine_anywhere
 
         def refine(aim: IKProblem, first: Refine, batches: Iterator[NDArray[np.float64]], share: float) -> None:
             for starts in batches:
                 if exclusion is not None:
-                    exclusion.go_on(ledger)
-                    if ledger.over(share):
+                    exclusion.go_on(state)
+                    if state.over(share):
                         return
-                before = ledger.spent
-                ledger.add(first(aim, starts, ledger.left(share)))
-                if ledger.over(share) or ledger.spent == before:
+                before = state.spent
+                state.add(first(aim, starts, state.left(share)))
+                if state.over(share) or state.spent == before:
                     return
-                first = refiner.refine
+                first = descent.refine
 
         if problem.loose:
             if not tried:
                 refine(problem, anywhere, islice(batches(), 1), share)
-            if not ledger.over(share):
+            if not state.over(share):
                 refine(problem.whole, anywhere, batches(), share)
             return
-        if not tried or not ledger.over(share):
-            refine(problem, refiner.refine if tried else anywhere, batches(tried), share)
-        if not ledger.met and self.starts is None and not ledger.over(share + RESERVE):  # no start counts twice
+        if not tried or not state.over(share):
+            refine(problem, descent.refine if tried else anywhere, batches(tried), share)
+        if not state.met and self.starts is None and not state.over(share + RESERVE):  # no start counts twice
             refine(problem.whole, anywhere, islice(batches(), 1), share + RESERVE)
 
     def _seed(
@@ -252,21 +294,21 @@ class IKSolver:
         seeder: Metaheuristic,
         seeds: NDArray[np.float64] | None,
         rng: Rng,
-        ledger: Ledger,
+        state: SearchState,
     ) -> None:
         """Search with the metaheuristic; with a refiner in rounds, each refining the elite of its search."""
         generator = as_generator(rng)
-        share = 1.0 if self._refiner is None else SEEDER_SHARE
+        share = 1.0 if self._descent is None else SEEDER_SHARE
         while True:
-            budget = ledger.slice(share)
+            budget = state.slice(share)
             found = minimize(
-                ledger.problem.costs, problem.box, seeder, budget, generator, seeds=seeds, trace=self.trace, keep=ELITE
+                state.problem.costs, problem.box, seeder, budget, generator, seeds=seeds, trace=self.trace, keep=ELITE
             )
-            ledger.add_search(found)
-            if self._refiner is None:
+            state.add_search(found)
+            if self._descent is None:
                 return
-            ledger.add(self._refiner.refine(ledger.problem, found.elite, ledger.left(1.0 - RESERVE)))
-            if ledger.over(1.0 - RESERVE):
+            state.add(self._descent.refine(state.problem, found.elite, state.left(1.0 - RESERVE)))
+            if state.over(1.0 - RESERVE):
                 return
             seeds = None
 

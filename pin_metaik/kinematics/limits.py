@@ -127,6 +127,12 @@ class Limits:
         step[..., self.periodic] = around - 2.0 * np.pi * np.round(around / (2.0 * np.pi))
         return step
 
+    def separation(self, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How far coordinates a and b (..., n) are apart, each by itself, rad or m; whole turns do not count."""
+        step = self._given("b", b) - self._given("a", a)
+        turns = 2.0 * np.pi * np.round(step / (2.0 * np.pi))
+        return np.abs(np.where(self.winds, step - turns, step))
+
     def contains(self, x: NDArray[np.float64], tolerance: float = 0.0) -> bool:
         """Whether every coordinate is inside its limits, up to ``tolerance`` (rad or m)."""
         # Plain floats: on a handful of numbers three times quicker than numpy's reductions.

@@ -35,6 +35,19 @@ COMMAND = [
     sys.executable, "-m", "pin_metaik", "compare", "--robot", "ur5", "--cases", "singular", "path",
     "--methods", ",".join(METHODS), "--tasks", "3", "--seeds", "2", "--budget", "300",
 ]  # fmt: skip
+# The same, but that it and all its processes are killed as soon as the first rows are written.
+KILLED = """
+import os, signal
+from pin_metaik.compare.folder.store import Appender
+
+def add(self, trials, add=Appender.add):
+    add(self, trials)
+    os.killpg(0, signal.SIGKILL)
+
+Appender.add = add
+from pin_metaik_command import run
+run()
+"""
 
 
 @pytest.fixture(scope="module")
@@ -194,15 +207,10 @@ def test_peers_that_are_missing_are_told_before_anything_runs(monkeypatch: pytes
 
 @pytest.mark.slow
 def test_killed_half_way_and_started_again_the_rows_are_those_of_one_stretch(whole: Path, tmp_path: Path) -> None:
-    out, file = ["--jobs", "2", "--out", str(tmp_path)], tmp_path / ROWS
-    running = subprocess.Popen([*COMMAND, *out], env=ENVIRONMENT, start_new_session=True, stderr=subprocess.DEVNULL)
-    try:
-        until = time.monotonic() + 120.0
-        while not (file.exists() and file.stat().st_size) and time.monotonic() < until:
-            time.sleep(0.001)
-    finally:
-        os.killpg(running.pid, signal.SIGKILL)
-        running.wait()
+    out = ["--jobs", "2", "--out", str(tmp_path)]
+    killed = [COMMAND[0], "-c", KILLED, *COMMAND[3:], *out]
+    with subprocess.Popen(killed, env=ENVIRONMENT, start_new_session=True, stderr=subprocess.DEVNULL) as running:
+        assert running.wait(timeout=300) == -signal.SIGKILL
     there = rows(tmp_path)
     assert 0 < len(there) < 48
     done = subprocess.run([*COMMAND, *out], env=ENVIRONMENT, capture_output=True, text=True, timeout=300)
@@ -227,12 +235,14 @@ def scheduler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
             stack.callback(process.terminate)
 
         start("scheduler", "--port", "0", "--scheduler-file", str(where), *here)
-        for _ in range(2):
-            start("worker", "--scheduler-file", str(where), "--nworkers", "1", "--nthreads", "1", *here)
-        until = time.monotonic() + 60.0
-        while not where.exists() and time.monotonic() < until:
+        address, until = None, time.monotonic() + 60.0
+        while address is None and time.monotonic() < until:
             time.sleep(0.05)
-        address = str(json.loads(where.read_text())["address"])
+            with suppress(FileNotFoundError, json.JSONDecodeError):  # it is not there yet, or not whole
+                address = str(json.loads(where.read_text())["address"])
+        assert address is not None
+        for _ in range(2):
+            start("worker", address, "--nworkers", "1", "--nthreads", "1", *here)
         from distributed import Client
 
         with Client(address, timeout=60) as client:  # type: ignore[no-untyped-call]
@@ -282,7 +292,7 @@ def test_where_no_arm_has_any_of_the_cases_that_is_said_before_the_work(tmp_path
 
 def test_a_second_process_is_refused_and_a_killed_one_leaves_no_lock(tmp_path: Path) -> None:
     holder = "import sys, time; from pathlib import Path; from pin_metaik.compare.folder.lock import locked\n"
-    holder += f"with locked(Path({str(tmp_path)!r}), 'comparison'): print('held', flush=True); time.sleep(60)"
+    holder += f"with locked(Path({str(tmp_path)!r}), 'comparison'): print('held', flush=True); time.sleep(3600)"
     with subprocess.Popen([sys.executable, "-c", holder], env=ENVIRONMENT, stdout=subprocess.PIPE) as running:
         try:
             assert running.stdout is not None and running.stdout.readline() == b"held\n"

@@ -5,9 +5,9 @@ import pytest
 import pin_metaik as mik
 from pin_metaik.collision import Box, Obstacle, load_scene, scene_names
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.ik.clear import ClearSearch
-from pin_metaik.ik.ledger import Ledger
-from pin_metaik.ik.push import Push
+from pin_metaik.ik.clearance.qp import Push
+from pin_metaik.ik.clearance.search import ClearSearch
+from pin_metaik.ik.state import SearchState
 from pin_metaik.optimize import make
 from tests.collision.worlds import brute_force, robot_of, world_of
 from tests.robots_under_test import chain_of
@@ -174,16 +174,15 @@ def test_pushing_frees_some_and_what_it_calls_free_is() -> None:
 
 @pytest.mark.slow
 def test_metaheuristic_seeds_alone_find_free_solutions() -> None:
-    world = world_of("panda", "table")
     found = 0
     problems = collided("table", 6)
     for problem, x in problems:
-        ledger = Ledger(problem, mik.Budget(evaluations=50_000), 0.0, x)
-        search = ClearSearch(problem, world, chain_of("panda").reference, ledger, 0)
+        state = SearchState(problem, mik.Budget(evaluations=50_000), 0.0, x)
+        search = ClearSearch(problem, chain_of("panda").reference, state, mik.DLS().descent(), 0)
         free = search.seed(make("mtde"))
         found += free is not None
         assert free is None or problem.accepts(problem.chain.q(free))
-        assert ledger.spent > 0
+        assert state.spent > 0
     assert found >= len(problems) / 3
 
 

@@ -52,7 +52,7 @@ def true_rows(problem: mik.IKProblem, x: np.ndarray, J: np.ndarray) -> np.ndarra
     placements = problem.chain.placements(problem.chain.q(x))
     for t, (target, placement) in enumerate(zip(problem.targets, placements, strict=True)):
         rows = np.flatnonzero((problem.rows[:, 0] == t) & (problem.rows[:, 1] >= 3))
-        if len(rows) == 3 and not problem.tasks[t, 15:18].any():
+        if len(rows) == 3 and not problem.records[t, 15:18].any():
             w = pin.log3(target.pose.rotation.T @ placement.rotation)
             J[:, rows] = J[:, rows] @ pin.Jlog3(pin.exp3(-w)).T  # Jl^-1(w) = Jr^-1(-w)
     return J

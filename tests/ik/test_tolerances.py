@@ -127,7 +127,7 @@ def test_lists_and_arrays_of_three_are_tolerances(three: object) -> None:
     assert {type(each) for each in target.orientation_tolerance} == {float}
     assert isinstance(hash((target.position_tolerance, target.orientation_tolerance)), int)
     same = mik.Target(np.eye(4), position_tolerance=target.position_tolerance)
-    assert_array_equal(same.task[12:15], target.task[12:15])
+    assert_array_equal(same.record[12:15], target.record[12:15])
 
 
 @pytest.mark.parametrize("tolerance", [[1e-3] * 2, [[1e-3] * 3], [1e-3, -1.0, 1e-3], ([1e-3], 1.0, 1.0), {}, None])

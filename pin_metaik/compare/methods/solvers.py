@@ -14,9 +14,9 @@ from pin_metaik.compare.methods.cost import evaluations_of, steps_within
 from pin_metaik.compare.methods.counted import Counted
 from pin_metaik.compare.methods.method import Answer
 from pin_metaik.ik import IKProblem, IKResult, IKSolver, IKStatus, Refiner, solve_ik
-from pin_metaik.ik.ledger import Ledger
 from pin_metaik.ik.refine import make_refiner
 from pin_metaik.ik.solver import ELITE
+from pin_metaik.ik.state import SearchState
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
 from pin_metaik.optimize.settings import whole
 
@@ -48,7 +48,7 @@ class Search:
     def solve(self, problem: IKProblem, x0: NDArray[np.float64], budget: int, rng: np.random.Generator) -> Answer:
         """Search within the budget."""
         solver = replace(self.solver, budget=Budget(evaluations=budget))
-        return answer(solver.solve(problem, problem.chain.q(x0), rng))
+        return answer(solver.search(problem, problem.chain.q(x0), rng))
 
 
 @dataclass(frozen=True)
@@ -100,17 +100,17 @@ class Rounds:
     def solve(self, problem: IKProblem, x0: NDArray[np.float64], budget: int, rng: np.random.Generator) -> Answer:
         """Search within the budget."""
         refiner = Counted(make_refiner(self.refiner))
-        ledger = Ledger(problem, Budget(evaluations=budget), perf_counter(), x0)
+        state = SearchState(problem, Budget(evaluations=budget), perf_counter(), x0)
         seeds: NDArray[np.float64] | None = x0[None]
-        while not ledger.over() and problem.gap == 0.0:
-            budget_of_round = Budget(evaluations=min(self.round, ledger.left()), target=problem.good_enough)
-            found = minimize(problem.costs, problem.box, self.seeder, budget_of_round, rng, seeds=seeds, keep=ELITE)
-            ledger.add_search(found)
-            if not ledger.over():
-                ledger.add(refiner.refine(problem, found.elite, ledger.left()))
+        while not state.over() and problem.gap == 0.0:
+            allowed = Budget(evaluations=min(self.round, state.left()), target=problem.success_cost)
+            found = minimize(problem.costs, problem.box, self.seeder, allowed, rng, seeds=seeds, keep=ELITE)
+            state.add_search(found)
+            if not state.over():
+                state.add(refiner.refine(problem, found.elite, state.left()))
             seeds = None
-        met = problem.accepts(problem.chain.q(ledger.x))
-        return Answer(ledger.x, met, ledger.spent, str(IKStatus.SOLVED if met else ledger.status))
+        met = problem.accepts(problem.chain.q(state.x))
+        return Answer(state.x, met, state.spent, str(IKStatus.SOLVED if met else state.status))
 
 
 def answer(result: IKResult) -> Answer:

@@ -81,7 +81,7 @@ def hybrid(
 
     def work() -> Trial:
         began = process_time()
-        result = solver.solve(case.problem, rng=rng)
+        result = solver.search(case.problem, rng=rng)
         seconds = process_time() - began
         cost = float(case.objective(result.x[None])[0])
         return Trial(case.name, refined(method), budget, run, cost, result.x, result.evaluations, seconds)

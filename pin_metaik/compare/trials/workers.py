@@ -7,6 +7,7 @@ import threading
 import warnings
 from collections.abc import Iterator
 from multiprocessing import resource_tracker
+from multiprocessing.util import Finalize
 from typing import Any, Literal, TypeAlias
 
 from pin_metaik.compare.trials.trial import Trial
@@ -18,7 +19,9 @@ from pin_metaik.lookup import need
 Backend: TypeAlias = Literal["loky", "dask"]
 
 CONNECTING = 10.0  # s
+ENDING = 5.0  # s
 LOKYS_THREAD = "ExecutorManagerThread"
+LOKYS_FEEDER = "QueueFeederThread"
 
 
 def need_joblib() -> None:
@@ -37,16 +40,19 @@ def worked(items: list[WorkItem], jobs: int, backend: Backend, scheduler: str | 
         if backend == "dask":
             chosen |= {"client": stack.enter_context(_cluster(scheduler)), "n_jobs": -1}
         stack.enter_context(_no_last_words())
+        others = set(threading.enumerate())
         with Pressed(held=True) as pressed:  # or it might come in a callback of weak references, which swallows it
             rows = _begun(items, chosen)
         try:
             pressed.check()
             for trials in rows:  # noqa: UP028  # `yield from` would close them before the lines below
                 yield trials
-        finally:
+        except BaseException:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # joblib's, of tasks that an interrupt leaves undone
                 rows.close()
+            _await_feeders(others)
+            raise
 
 
 def _begun(items: list[WorkItem], chosen: dict[str, Any]) -> Any:
@@ -75,6 +81,17 @@ def _no_last_words() -> Iterator[None]:
         yield
     finally:
         threading.excepthook = before
+
+
+def _await_feeders(others: set[threading.Thread]) -> None:
+    """Let the process not end before loky's threads that feed its queues have, those in ``others`` apart.
+
+    They end when their queue is closed, at exit (priority 10). One that is cut off while it gives its semaphores back
+    (priority 0) leaves one to loky's tracker of resources, which then warns of it.
+    """
+    for thread in set(threading.enumerate()) - others:
+        if thread.name == LOKYS_FEEDER:
+            Finalize(None, thread.join, (ENDING,), exitpriority=5)
 
 
 def _cluster(scheduler: str | None) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,11 +10,9 @@ from numpy.typing import NDArray
 from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.refine.descent import CompiledDescent, Stepwise
+from pin_metaik.ik.refine.lm import LM
 from pin_metaik.ik.refine.protocol import Refinement, given_starts
-
-PROGRESS = 0.49  # a start is given up unless four steps bring the squared error below this share,
-SETTLED = 1.0 - 1e-9  # ... or this one, when there is nothing else to try
-STIFF = 1.0  # damping where a solution is far: plain least squares overshoots there
 
 
 @checked
@@ -24,7 +22,8 @@ class DLS:
 
     Each step is dx = -J' (J J' + lambda I)^-1 e over the joints that are not at a limit and pushed outward, with
     lambda = damping |e|^2 + 1e-9. Joints that would cross a limit go onto it and the step is solved again for the
-    others. A start is given up when four steps do not take the error below 70 % of what it was.
+    others. A start is given up when four steps do not take the error below 70 % of what it was. Goals that only Python
+    evaluates are descended to by Levenberg-Marquardt (``LM``) instead.
 
     Attributes:
         damping: What the squared error is multiplied with, 1/m^2 or 1/rad^2.
@@ -41,34 +40,21 @@ class DLS:
         if self.iterations < 1:
             raise InvalidSetting(f"iterations is at least 1, got {self.iterations!r}")
 
+    def descent(self) -> CompiledDescent:
+        """Its compiled loops, as a global search takes them."""
+        return CompiledDescent(self.damping, self.iterations, Stepwise(LM()))
+
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent."""
-        starts = given_starts(problem, starts, evaluations)
-        return self._descend(problem, problem.chain.bare, starts, evaluations, PROGRESS)
+        return self.descent().refine(problem, given_starts(problem, starts, evaluations), evaluations)
 
     def refine_anywhere(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """The same, but from the sampled configurations that have the nearest poses, too.
 
         The first start (s, n) goes before them when its pose is nearer to the target than theirs.
         """
-        starts = given_starts(problem, starts, evaluations)
-        return self._descend(problem, problem.chain.block, starts, evaluations, PROGRESS)
+        return self.descent().refine_anywhere(problem, given_starts(problem, starts, evaluations), evaluations)
 
     def settle(self, problem: IKProblem, x: NDArray[np.float64], evaluations: int) -> Refinement:
         """Go on from x (n,) in small steps as long as it gets nearer at all: for targets that cannot be met."""
-        start = given_starts(problem, [x], evaluations)
-        return replace(self, damping=STIFF)._descend(problem, problem.chain.bare, start, evaluations, SETTLED)
-
-    def _descend(
-        self,
-        problem: IKProblem,
-        block: NDArray[np.float64],
-        starts: NDArray[np.float64],
-        evaluations: int,
-        progress: float,
-    ) -> Refinement:
-        best = np.empty(problem.chain.n)
-        settings = np.array([self.damping, progress, self.iterations, evaluations])
-        descend = problem.chain.kernels.descend
-        spent, solved_by = descend(block, problem.tasks, problem.descended, starts, settings, best)
-        return Refinement(best, solved_by >= 0, spent)
+        return self.descent().settle(problem, given_starts(problem, [x], evaluations)[0], evaluations)

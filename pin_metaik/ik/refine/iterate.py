@@ -53,9 +53,9 @@ def iterate(
     starts = given_starts(problem, starts, evaluations)
     chain = problem.chain
     lower, upper = chain.limits.lower, chain.limits.upper
-    linearize, given = chain.kernels.linearize, (chain.bare, problem.tasks, problem.rows)
-    r = np.empty(len(problem.rows))  # (m,)
-    by_coordinate = np.empty((chain.n, len(r)))  # (n, m)
+    r = np.empty(problem.m)  # (m,)
+    by_coordinate = np.empty((chain.n, problem.m))  # (n, m)
+    evaluate = problem._evaluator(r, by_coordinate)
     J = by_coordinate.T
     best, least, spent = np.minimum(np.maximum(starts[0], lower), upper), math.inf, 0
     for start in starts:
@@ -63,7 +63,7 @@ def iterate(
         for i in range(patience.iterations):
             if spent >= evaluations:
                 break
-            square, met = linearize(*given, x, r, by_coordinate)
+            square, met = evaluate(x)
             spent += 1
             if found and not (met and square < DECADE * least):
                 break

@@ -69,7 +69,9 @@ def clamp(rows: NDArray[np.float64], most: float | NDArray[np.float64]) -> NDArr
 
 
 def effectors_of(problem: IKProblem) -> NDArray[np.float64]:
-    """Which residuals belong to which frame's position or orientation: (e, m), ones and zeros."""
-    owner = 2 * problem.rows[:, 0] + problem.rows[:, 1] // 3  # (m,)
+    """Which residuals belong to which frame's position or orientation, or which other goal: (e, m), ones and zeros."""
+    placed = 2 * problem.rows[:, 0] + problem.rows[:, 1] // 3
+    others = np.repeat(-1 - np.arange(len(problem.goals.sizes)), problem.goals.sizes)
+    owner = np.concatenate([placed, others])  # (m,)
     effectors: NDArray[np.float64] = np.equal.outer(np.unique(owner), owner).astype(np.float64)
     return effectors

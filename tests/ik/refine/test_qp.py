@@ -27,7 +27,7 @@ def problem_of(robot: str, seed: int = 0) -> mik.IKProblem:
 def linearized(problem: mik.IKProblem, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
     chain, m = problem.chain, len(problem.rows)
     r, J = np.empty(m), np.empty((chain.n, m))
-    square, _ = chain.kernels.linearize(chain.bare, problem.tasks, problem.rows, x, r, J)
+    square, _ = chain.kernels.linearize(chain.bare, problem.records, problem.rows, x, r, J)
     return r, J.T, square
 
 

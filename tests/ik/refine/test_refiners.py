@@ -27,7 +27,7 @@ def reachable(chain: mik.Chain, count: int, seed: int = 0) -> list[list[pin.SE3]
 
 def square_at(problem: mik.IKProblem, x: np.ndarray) -> float:
     r, J = np.empty(len(problem.rows)), np.empty((problem.chain.n, len(problem.rows)))
-    square, _ = problem.chain.kernels.linearize(problem.chain.bare, problem.tasks, problem.rows, x, r, J)
+    square, _ = problem.chain.kernels.linearize(problem.chain.bare, problem.records, problem.rows, x, r, J)
     return float(square)
 
 

@@ -1,4 +1,4 @@
-"""What a frame shall reach: a pose, a position or an orientation, and how closely."""
+"""The goal of a frame's pose, position or orientation, and how closely it shall be met."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 import sys
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import NamedTuple, TypeAlias
+from typing import ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 import pinocchio as pin
@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, instance, shown
 from pin_metaik.errors import InvalidTarget
-from pin_metaik.kinematics.kernel.layout import ALIGNED, NEAR, SLACK, TURN_SLACK
+from pin_metaik.ik.goals.goal import Placed
+from pin_metaik.kinematics.kernel.layout import ALIGNED, NEAR, SLACK, TURN_SLACK, WEIGHT
 from pin_metaik.kinematics.pose import as_pose, as_position
 
 Tolerance: TypeAlias = float | tuple[float, float, float]
@@ -49,13 +50,15 @@ class Target:
             nothing is left that counts.
     """
 
+    _asks: ClassVar[bool] = True
+
     pose: pin.SE3
     frame: str | None = None
     position_tolerance: Tolerance = DEFAULT_TOLERANCE
     orientation_tolerance: Tolerance = DEFAULT_TOLERANCE
     position_weight: float = 1.0
     orientation_weight: float = 1.0
-    task: NDArray[np.float64] = field(init=False, repr=False)  # (26,) as the kernels take it
+    record: NDArray[np.float64] = field(init=False, repr=False)  # (26,) as the kernels take it
     counts: tuple[bool, ...] = field(init=False, repr=False)  # which of the six axes are not free
     loose: bool = field(init=False, repr=False)  # whether one of those may be off by more than the default tolerance
 
@@ -71,14 +74,14 @@ class Target:
             object.__setattr__(self, "position_tolerance", metres)
         if radians is not self.orientation_tolerance:
             object.__setattr__(self, "orientation_tolerance", radians)
-        if FREE == max(slack) == min(slack) == min(lean):
+        if self._asks and FREE == max(slack) == min(slack) == min(lean):
             raise InvalidTarget("this target frees every axis: nothing is left to reach")
         weight = _weight("position_weight", self.position_weight)
         turn = _weight("orientation_weight", self.orientation_weight)
         # A goal of ``kernel.layout``: the world in the target frame, slack and weight of each axis, radii.
         world = (a, d, g, b, e, h, c, f, i, -a * x - d * y - g * z, -b * x - e * y - h * z, -c * x - f * y - i * z)
         weights = (weight, weight, weight, turn, turn, turn)
-        object.__setattr__(self, "task", np.array(world + slack + lean + weights + (near, aligned)))
+        object.__setattr__(self, "record", np.array(world + slack + lean + weights + (near, aligned)))
         object.__setattr__(self, "counts", _finite(slack + lean))
         object.__setattr__(self, "loose", wide or broad)
 
@@ -124,14 +127,14 @@ class Target:
         )
 
     @cached_property
-    def whole_task(self) -> NDArray[np.float64]:
+    def whole_record(self) -> NDArray[np.float64]:
         """(26,) as the kernels take it, aimed at all that is accepted: up to its tolerances an error counts nothing."""
-        task = self.task.copy()
+        record = self.record.copy()
         parts = (SLACK, NEAR, self.position_tolerance), (TURN_SLACK, ALIGNED, self.orientation_tolerance)
         for slacks, allowed, tolerance in parts:
             slack, radius = _whole(tolerance)
-            task[slacks : slacks + 3], task[allowed] = slack, radius
-        return task
+            record[slacks : slacks + 3], record[allowed] = slack, radius
+        return record
 
     @property
     def allowance(self) -> tuple[float, float]:
@@ -144,6 +147,29 @@ class Target:
         each = self.orientation_tolerance
         return _radius(tuple(t for t in each if t < FREE) if isinstance(each, tuple) else 0.0 if each == FREE else each)
 
+    def residual(self, at: Placed) -> NDArray[np.float64]:
+        """(6,) weighted errors of position (m) and orientation (rad) beyond the tolerances, as every goal has them."""
+        error = self.pose.actInv(self._placement(at))
+        r, record = np.concatenate([error.translation, pin.log3(error.rotation)]), self.whole_record
+        for part in (SLACK, TURN_SLACK):
+            slack, rows = record[part : part + 3], slice(part - SLACK, part - SLACK + 3)
+            if slack[0] < 0.0:  # minus the radius of a ball
+                size = float(np.linalg.norm(r[rows]))
+                r[rows] *= max(size + slack[0], 0.0) / max(size, sys.float_info.min)
+            else:
+                r[rows] = np.maximum(r[rows] - slack, 0.0) + np.minimum(r[rows] + slack, 0.0)
+        weighted: NDArray[np.float64] = record[WEIGHT:NEAR] * r
+        return weighted
+
+    def met(self, at: Placed) -> bool:
+        """Whether its frame is within the tolerances, by Pinocchio."""
+        return self.judge(self._placement(at)).met
+
+    def _placement(self, at: Placed) -> pin.SE3:
+        """World pose of its frame, or of the chain's first one if it names none."""
+        instance(Placed, at=at)
+        return at.pose(at.chain.frames[0] if self.frame is None else self.frame)
+
     def judge(self, placement: pin.SE3) -> Judgement:
         """How far a world placement is from this target, and whether that is close enough; by Pinocchio."""
         instance(pin.SE3, placement=placement)
@@ -151,6 +177,12 @@ class Target:
         position, near = _measure(error.translation.tolist(), self.position_tolerance)
         orientation, aligned = _measure(pin.log3(error.rotation).tolist(), self.orientation_tolerance)
         return Judgement(position, orientation, near and aligned)
+
+
+class Anywhere(Target):
+    """What every pose meets: the target of a frame that only other goals are about."""
+
+    _asks: ClassVar[bool] = False
 
 
 TargetLike: TypeAlias = Target | pin.SE3 | ArrayLike
@@ -233,3 +265,6 @@ def _weight(name: str, weight: float) -> float:
     if not (isinstance(weight, (int, float, np.integer, np.floating)) and 0.0 < weight <= sys.float_info.max):
         raise InvalidTarget(f"{name} is a finite number above 0, got {shown(weight)}")
     return float(weight)
+
+
+ANYWHERE = Anywhere(pin.SE3.Identity(), position_tolerance=FREE, orientation_tolerance=FREE)

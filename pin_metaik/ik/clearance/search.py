@@ -8,14 +8,13 @@ from itertools import chain, count, cycle, islice
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.collision import CollisionWorld
+from pin_metaik.ik.clearance.qp import Push
 from pin_metaik.ik.collect import collect
-from pin_metaik.ik.gather import gather
-from pin_metaik.ik.ledger import ENDLESS, Ledger
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
-from pin_metaik.ik.push import Push
+from pin_metaik.ik.refine.descent import Descent
 from pin_metaik.ik.starts import BATCH, drawn
+from pin_metaik.ik.state import ENDLESS, SearchState
 from pin_metaik.optimize import Budget, Metaheuristic, minimize
 from pin_metaik.randomness import Rng, as_generator
 
@@ -38,7 +37,7 @@ class ClearSearch:
     """One search for a solution of a problem that is free of collisions in the problem's world.
 
     Attributes:
-        ledger: What was spent of which budget.
+        state: What was spent of which budget.
         found: (CANDIDATES, n) solutions in collision; ``known`` rows of them are taken.
         complete: Whether there are no other solutions, as far as can be told.
         proof: What proves that there are none.
@@ -47,10 +46,12 @@ class ClearSearch:
     """
 
     def __init__(
-        self, problem: IKProblem, world: CollisionWorld, base: NDArray[np.float64], ledger: Ledger, rng: Rng
+        self, problem: IKProblem, base: NDArray[np.float64], state: SearchState, descent: Descent, rng: Rng
     ) -> None:
-        """Set up for a problem; ``base`` (nq,) holds the joints that the chain does not move."""
-        self.problem, self.world, self.base, self.ledger, self.rng = problem, world, base, ledger, rng
+        """Set up for a problem in a world; ``base`` (nq,) has the joints that the chain does not move."""
+        assert problem.world is not None
+        self.problem, self.world, self.base, self.state, self.rng = problem, problem.world, base, state, rng
+        self.descent = descent
         self.found = np.empty((CANDIDATES, problem.chain.n))
         self.known = 0
         self.complete = False
@@ -58,7 +59,7 @@ class ClearSearch:
         self.resolution: float | None = None
         self._depths = np.full(CANDIDATES, np.nan)  # of the solutions found, NaN where not known yet
         self._pushed: set[int] = set()
-        self._redundant = problem.chain.n > len(problem.rows) or problem.loose
+        self._redundant = problem.chain.n > problem.m or problem.loose or bool(problem.goals)
         self._generator = as_generator(rng)
 
     def run(self, x: NDArray[np.float64], seeder: Metaheuristic) -> NDArray[np.float64] | None:
@@ -69,7 +70,7 @@ class ClearSearch:
         starts = self.starts()
         free = self.others(islice(starts, OTHERS))
         for means in chain(("cover",), cycle(("push", "others", "seed"))):
-            if free is not None or self.ledger.over() or self.complete:
+            if free is not None or self.state.over() or self.complete:
                 break
             match means:
                 case "push":
@@ -84,11 +85,11 @@ class ClearSearch:
 
     def every(self) -> NDArray[np.float64] | None:
         """The first of all solutions that is free, the nearest to the one that collides first."""
-        budget = Budget(evaluations=self.ledger.left() if self.ledger.left() < ENDLESS else EVERY)
+        budget = Budget(evaluations=self.state.left() if self.state.left() < ENDLESS else EVERY)
         _, found, self.proof, spent = collect(
-            self.problem, self.found[0], self.rng, limit=CANDIDATES - 1, apart=APART, budget=budget
+            self.problem, self.found[0], self.descent, self.rng, limit=CANDIDATES - 1, apart=APART, budget=budget
         )
-        self.ledger.spent += spent
+        self.state.spent += spent
         found = found[np.argsort(np.linalg.norm(found - self.found[0], axis=1), kind="stable")]
         self.found[1 : 1 + len(found)], self.known, self.complete = found, 1 + len(found), True
         return next((x for x in found if self._accepts(x)), None)
@@ -98,12 +99,12 @@ class ClearSearch:
         boxes = self.problem.boxes(0, least=FINE) if len(self.problem.targets) == 1 else None
         if boxes is None:
             return None
-        kept = boxes.look(min(COVER, self.ledger.left_for_boxes), KEPT)
-        self.ledger.add_boxes(boxes.looked)
+        kept = boxes.look(min(COVER, self.state.left_for_boxes), KEPT)
+        self.state.add_boxes(boxes.looked)
         if not boxes.done:
             return None
         free = self.others(kept[:, : self.problem.chain.n])
-        if free is None and not self.ledger.over():
+        if free is None and not self.state.over():
             self.resolution, self.complete = FINE, True
             free = self.push(SHALLOW)
         return free
@@ -122,7 +123,7 @@ class ClearSearch:
     def others(self, starts: Iterable[NDArray[np.float64]]) -> NDArray[np.float64] | None:
         """Descend from starts (n,), one by one; the first new solution that is free."""
         for start in starts:
-            if self.ledger.over():
+            if self.state.over():
                 break
             if self.known == CANDIDATES:  # forget all but the least deep
                 self.found[:ELITE] = self.found[self._by_depth()[:ELITE]]
@@ -130,10 +131,10 @@ class ClearSearch:
                 self._depths[:] = np.nan
                 self._pushed.clear()
             room = self.found[: self.known + 1]
-            spent, known, _ = gather(
-                self.problem, start[None], room, self.known, APART, 2, self.ledger.left(), branch=False
+            spent, known, _ = self.descent.gather(
+                self.problem, start[None], room, self.known, APART, 2, self.state.left(), branch=False
             )
-            self.ledger.spent += spent
+            self.state.spent += spent
             new, self.known = known > self.known, known
             newest: NDArray[np.float64] = room[-1]
             if new and self._accepts(newest):
@@ -143,8 +144,8 @@ class ClearSearch:
     def _pushed_out(self, points: NDArray[np.float64]) -> NDArray[np.float64] | None:
         """The first of the points (s, n) that can be pushed out of collision."""
         for x in points:
-            refined = Push().refine(self.problem, self.world, x, self.base, self.ledger.left())
-            self.ledger.spent += refined.evaluations
+            refined = Push().refine(self.problem, self.world, x, self.base, self.state.left())
+            self.state.spent += refined.evaluations
             if refined.met:
                 return refined.x
         return None
@@ -168,12 +169,12 @@ class ClearSearch:
             costs,
             problem.box,
             seeder,
-            self.ledger.slice(SEEDING),
+            self.state.slice(SEEDING),
             self._generator,
             seeds=self.found[self._by_depth()[:ELITE]],
             keep=ELITE,
         )
-        self.ledger.add_search(found)
+        self.state.add_search(found)
         free = self.others(found.elite)
         return self._pushed_out(found.elite[:2]) if free is None else free
 

@@ -1,4 +1,4 @@
-"""Collisions on top of inverse kinematics: a result is checked, and searched on from when it collides."""
+"""Collisions on top of inverse kinematics: a result is checked, and the search goes on when it collides."""
 
 from __future__ import annotations
 
@@ -6,48 +6,64 @@ from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from pin_metaik.collision import CollisionWorld
-from pin_metaik.ik.clear import ClearSearch
-from pin_metaik.ik.ledger import Ledger
+from pin_metaik.ik.clearance.search import ClearSearch
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
+from pin_metaik.ik.refine.descent import Descent
 from pin_metaik.ik.result import IKResult, IKStatus
-from pin_metaik.ik.solver import FALLBACK, IKSolver
-from pin_metaik.optimize import make
+from pin_metaik.ik.state import SearchState
+from pin_metaik.optimize import Budget, Metaheuristic
 from pin_metaik.randomness import Rng
 
-LEVER = 2.0  # m; how far from its frame what a frame holds may reach, generously
-HELD = 0.01  # m; looser targets do not hold their frame
+LEVER = 2.0  # m, bound of the lever arms of bodies attached to a frame
+HELD = 0.01  # m; a frame with a looser target is not taken to be fixed by it
 
 
-def keep_clear(first: IKResult, q0: ArrayLike | None, solver: IKSolver, world: CollisionWorld, rng: Rng) -> IKResult:
-    """The result itself where it is free of collisions in the world, else one that is, else the least deep one.
+def keep_clear(
+    first: IKResult,
+    problem: IKProblem,
+    base: NDArray[np.float64],
+    *,
+    descent: Descent,
+    seeder: Metaheuristic,
+    budget: Budget,
+    rng: Rng,
+) -> IKResult:
+    """Return ``first`` if it is free of collisions; otherwise search for a solution that is.
 
-    What is not solved without the world is not solved in it. Where what collides cannot move, or is held where it is by
-    the target, no configuration is free and none is looked for.
+    Without one the result is the solution with the smallest penetration. No search is made if the target is not met
+    without the world, or if the colliding bodies are fixed, or attached to a frame whose whole pose is given.
+
+    Args:
+        first: What was found without regard to collisions, or among what is free of them.
+        problem: The problem with its world.
+        base: (nq,) configuration that has the joints that the chain does not move.
+        descent: How solutions are reached.
+        seeder: A metaheuristic, for points that are near the target and not deep in collision.
+        budget: Of ``first`` and of this search together.
+        rng: Seed or generator.
     """
-    began = perf_counter()
-    problem = IKProblem.of(first.chain, first.target, world)
+    began, world, chain = perf_counter(), problem.world, problem.chain
+    assert world is not None
     met = first.status in (IKStatus.SOLVED, IKStatus.IN_COLLISION)
     if not met or not world.checker.collides(first.q):
         return replace(first, world=world, seconds=first.seconds + perf_counter() - began)
-    chain = first.chain
-    base = chain.reference if q0 is None else chain.configuration(q0)
-    ledger = Ledger(problem, solver.budget, began - first.seconds, first.x)
-    ledger.spent = first.evaluations
-    search = ClearSearch(problem.whole if problem.loose else problem, world, base, ledger, rng)
+    state = SearchState(problem, budget, began - first.seconds, first.x)
+    state.spent = first.evaluations
+    search = ClearSearch(problem.whole if problem.loose else problem, base, state, descent, rng)
     free: NDArray[np.float64] | None = None
     if _hopeless(problem, world, first.q):
         search.proof = Proof.CONTACT
     else:
-        free = search.run(first.x, make(FALLBACK if solver.seeder in (None, "auto") else solver.seeder))
+        free = search.run(first.x, seeder)
     if free is not None:
         q, status = chain.q(chain.limits.nearest_turns(free, chain.x(base)), base), IKStatus.SOLVED
     else:
         q = chain.q(search.least_deep(), base) if search.known else first.q
-        status = IKStatus.STOPPED if ledger.late() else IKStatus.IN_COLLISION
+        status = IKStatus.STOPPED if state.late() else IKStatus.IN_COLLISION
     verdict = problem.verdict(q)
     return replace(
         first,
@@ -55,7 +71,7 @@ def keep_clear(first: IKResult, q0: ArrayLike | None, solver: IKSolver, world: C
         status=status,
         position_error=verdict.position_error,
         orientation_error=verdict.orientation_error,
-        evaluations=ledger.spent,
+        evaluations=state.spent,
         seconds=first.seconds + perf_counter() - began,
         world=world,
         contacts=world.checker.contacts(q) if verdict.collides else (),

@@ -17,7 +17,7 @@ from pin_metaik.optimize import Budget, Result
 ENDLESS = 2**62
 
 
-class Ledger:
+class SearchState:
     """Keeps the best coordinates and the budget of one search.
 
     Attributes:
@@ -38,7 +38,7 @@ class Ledger:
         x0: NDArray[np.float64],
         patience: int | None = None,
     ) -> None:
-        """Open the books; ``patience`` is how much of the budget a search may take, the rest being for boxes."""
+        """Begin at x0 (n,); a search may take ``patience`` evaluations of the budget, the rest is for boxes."""
         self.x = x0
         self.met = False
         self.spent = 0
@@ -90,7 +90,7 @@ class Ledger:
     def slice(self, share: float) -> Budget:
         """A budget for one round of seeding: this share of what is left."""
         total, seconds = self._budget.evaluations, self._budget.seconds
-        goal = self.problem.good_enough if self._budget.target is None else self._budget.target
+        goal = self.problem.success_cost if self._budget.target is None else self._budget.target
         return Budget(
             None if total is None else max(1, int(share * self.left())),
             None if seconds is None else max(1e-3, share * (seconds - self._elapsed())),

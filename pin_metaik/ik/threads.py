@@ -39,7 +39,7 @@ class Helper(Thread):
             ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(self.ident), ctypes.py_object(SystemExit))
 
 
-def share_out(work: Callable[[T], None], parts: Iterable[T], workers: int) -> None:
+def run_parallel(work: Callable[[T], None], parts: Iterable[T], workers: int) -> None:
     """Do the work for all parts: each thread, the calling one included, takes the next part when it has finished one.
 
     The calling thread works, too, instead of waiting: waking it for every result would contend for the interpreter.
