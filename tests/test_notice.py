@@ -2,7 +2,6 @@ import io
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
 
 import pytest
 
@@ -16,19 +15,19 @@ class Terminal(io.StringIO):
     def isatty(self) -> bool:
         return True
 
-
-@pytest.fixture
-def written(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], str]]:
-    """What stands on a terminal, from the moment on when there is something."""
-    monkeypatch.setattr(sys, "stderr", Terminal())
-
-    def text() -> str:
+    def written(self) -> str:
+        """What stands on it, from the moment on when there is something."""
         until = time.monotonic() + PATIENCE
-        while not sys.stderr.getvalue() and time.monotonic() < until:  # type: ignore[attr-defined]
+        while not self.getvalue() and time.monotonic() < until:
             time.sleep(1e-3)
-        return str(sys.stderr.getvalue())  # type: ignore[attr-defined]
+        return self.getvalue()
 
-    yield text
+
+def terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
+    """A terminal in the place of the standard error of a test."""
+    shown = Terminal()
+    monkeypatch.setattr(sys, "stderr", shown)
+    return shown
 
 
 def after_timers() -> None:
@@ -61,20 +60,22 @@ def test_long_work_says_so_once_where_nobody_looks(capsys: pytest.CaptureFixture
     assert capsys.readouterr().err == "pin_metaik: counting ...\n"
 
 
-def test_long_work_counts_on_a_terminal(written: Callable[[], str]) -> None:
+def test_long_work_counts_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = terminal(monkeypatch)
     with notice("counting", 20) as line:
-        assert written() == "\rpin_metaik: counting ... 0 of 20"
+        assert shown.written() == "\rpin_metaik: counting ... 0 of 20"
         after_timers()
         for _ in range(20):
             line.step()
-    assert written() == "".join(f"\rpin_metaik: counting ... {i} of 20" for i in range(21)) + "\n"
+    assert shown.written() == "".join(f"\rpin_metaik: counting ... {i} of 20" for i in range(21)) + "\n"
 
 
-def test_work_that_fails_ends_its_line(written: Callable[[], str]) -> None:
+def test_work_that_fails_ends_its_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = terminal(monkeypatch)
     with pytest.raises(KeyboardInterrupt), notice("counting", 20):
-        assert written()
+        assert shown.written()
         raise KeyboardInterrupt
-    assert written() == "\rpin_metaik: counting ... 0 of 20\n"
+    assert shown.written() == "\rpin_metaik: counting ... 0 of 20\n"
 
 
 def test_work_without_a_standard_error_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
