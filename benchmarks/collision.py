@@ -44,7 +44,7 @@ READING = """
 
 - Plain rejection solves these scenes, too, given the evaluations: a descent costs some ten microseconds, and solutions
   differ enough that some dozens of random ones hold a free one. What our search brings is fewer evaluations: because it
-  starts from an atlas and checks distinct solutions only, and, where a target leaves freedom, because it pushes
+  starts from the sample table and checks distinct solutions only, and, where a target leaves freedom, because it pushes
   solutions out of collision. In time the two are alike, as a push costs milliseconds.
 - On their own, seeds cost two orders of magnitude more time than other solutions, as each of their evaluations asks
   coal. Here they bring nothing; they come last, for targets that chance and pushes do not meet.

@@ -241,7 +241,7 @@ def trial(target: int = 0) -> compare.Trial:
 
 
 def suite() -> compare.Suite:
-    return compare.Suite(("ur5",), ("random",), ("lm",), targets=1, seeds=1, budget=50)
+    return compare.Suite(("ur5",), ("random",), ("lm",), tasks=1, seeds=1, budget=50)
 
 
 @cache
@@ -1196,7 +1196,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "compare.Case.lacks": lambda: {"robot": ur5(), "rng": rng()},
     "compare.Case.task": lambda: {"chain": chain(), "world": None, "rng": rng()},
     "compare.Replay.lines": dict,
-    "compare.Results.of": lambda: {"robot": "ur5", "case": "random", "method": "lm"},
+    "compare.Results.rows": lambda: {"robot": "ur5", "case": "random", "method": "lm"},
     "compare.Results.hopeless": lambda: {"case": "random"},
     "compare.Results.pairs": lambda: {"case": "random"},
     "compare.Results.spent": lambda: {"case": "random", "method": "lm"},
@@ -1207,16 +1207,16 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "robots": ("ur5",),
         "cases": ("random",),
         "methods": ("lm",),
-        "targets": 1,
+        "tasks": 1,
         "seeds": 1,
         "budget": 50,
         "rng": 0,
     },
     "compare.Suite.absent": dict,
-    "compare.Suite.units": lambda: {"done": frozenset(), "absent": ()},
+    "compare.Suite.work_items": lambda: {"done": frozenset(), "absent": ()},
     "compare.Task.at": lambda: {"chain": chain(), "X": np.array([X6]), "start": None},
     "compare.Trial.row": dict,
-    "compare.Trial.of": lambda: {"row": trial().row()},
+    "compare.Trial.from_row": lambda: {"row": trial().row()},
     "compare.compare": lambda: {
         "suite": suite(),
         "folder": folder(),

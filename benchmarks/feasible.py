@@ -13,7 +13,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 import pin_metaik as mik
-from pin_metaik.compare.case import NoTask
+from pin_metaik.compare.cases.case import NoTask
 from pin_metaik.compare.cases.singular import singular
 
 Floats = NDArray[np.float64]

@@ -51,7 +51,7 @@ def all_solutions(robot: str, python: str, count: int) -> Row:
     some = targets(robot, chain, "random", count, 7)
     poses = some.poses
     worker = Worker("eaik", python)
-    arm = SerialArm.of(robot, chain).to_json()
+    arm = SerialArm.of_chain(robot, chain).to_json()
     worker.ask(LOADING, do="load", arm=arm, poses=poses[:1].tolist(), starts=some.starts[:1].tolist())
     theirs = worker.ask(LOADING, do="every", poses=poses.tolist())["every"]
     worker.close()

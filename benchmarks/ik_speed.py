@@ -143,7 +143,7 @@ def _within(reached: pin.SE3, pose: pin.SE3) -> bool:
 
 def loaded(workers: dict[str, Worker], robot: str, chain: mik.Chain, report: Report) -> dict[str, Worker]:
     """The workers that can take this robot, after a few solves."""
-    arm = SerialArm.of(robot, chain).to_json()
+    arm = SerialArm.of_chain(robot, chain).to_json()
     warm = targets(robot, chain, "random", WARM_UP, WARM_UP_SEED)
     able = {}
     for name, worker in workers.items():

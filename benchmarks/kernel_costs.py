@@ -2,8 +2,9 @@
 
     python benchmarks/kernel_costs.py
 
-The figure is `FK_WITH_JACOBIAN` of `pin_metaik/compare/cost.py`: comparisons charge it for every step of a Jacobian
-method. It is a constant there, so that budgets, and with them the rows of a comparison, do not depend on the day.
+The figure is `FK_WITH_JACOBIAN` of `pin_metaik/compare/methods/cost.py`: comparisons charge it for every step of a
+Jacobian method. It is a constant there, so that budgets, and with them the rows of a comparison, do not depend on the
+day.
 """
 
 from __future__ import annotations

@@ -48,7 +48,7 @@ def main() -> None:
     print(f"{'case':10} {'method':16} {'solved':>7} {'evaluations':>12}")
     for case in results.cases:
         for method in results.methods:
-            summary = summarise(results.of(case=case, method=method))
+            summary = summarise(results.rows(case=case, method=method))
             median = f"{summary.evaluations[0]:12.0f}" if summary.evaluations else "           -"
             print(f"{case:10} {method:16} {summary.rate:7.0%} {median}")
 

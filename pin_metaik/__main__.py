@@ -1,5 +1,5 @@
 """``python -m pin_metaik``: the command line."""
 
-from pin_metaik.cli import run
+from pin_metaik_command import run
 
 run()

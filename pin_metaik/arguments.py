@@ -1,9 +1,9 @@
 """Arguments as their annotations promise them: read at the public doors, or refused with what would have worked.
 
-What a public function takes is written once, in its annotations. ``checked`` reads them: lists become the tuples and
-arrays that are annotated, texts become paths, and what is something else is told so before any work begins. Ranges and
-shapes depend on more than one argument; they are the function's own first lines, with ``array`` below and the settings
-of ``optimize``.
+The types of a public function's arguments are written once, in its annotations. ``checked`` reads them: lists become
+the tuples and arrays that are annotated, texts become paths, and anything else is refused before any work begins.
+Ranges and shapes depend on more than one argument; they are checked by the function's own first lines, with ``array``
+below and the settings of ``optimize``.
 """
 
 from __future__ import annotations

@@ -78,7 +78,7 @@ class InvalidTable(MetaIKError):
 
 
 class InvalidModel(MetaIKError):
-    """A robot description that cannot be read: missing, malformed, or without what it refers to."""
+    """A robot description that cannot be read: missing, malformed, or referring to files that are missing."""
 
 
 class UnsupportedJoint(MetaIKError):

@@ -1,4 +1,4 @@
-"""Files in: what they hold, or a named error that says which file and which key is wrong."""
+"""Reading files: their contents, or an error of ours that names the file and the key."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def read_text(path: Path | Traversable, error: Error, kind: str = "text") -> str
     Args:
         path: The file; ``~`` in front is the user's home.
         error: What to raise if it is missing or no text; made from one sentence.
-        kind: What the file should be, for that.
+        kind: Kind of the file, for the message.
     """
     try:
         return (path.expanduser() if isinstance(path, Path) else path).read_text(encoding="utf-8-sig")
@@ -30,12 +30,12 @@ def read_text(path: Path | Traversable, error: Error, kind: str = "text") -> str
 
 
 def read_json(path: Path | Traversable, error: Error, kind: str = "JSON") -> Any:
-    """What a JSON file holds.
+    """The contents of a JSON file.
 
     Args:
         path: The file.
         error: What to raise if it is missing or malformed, or has a key twice; made from one sentence.
-        kind: What the file should be, for that.
+        kind: Kind of the file, for the message.
     """
     text = read_text(path, error, kind)
     try:
@@ -60,10 +60,10 @@ def known_keys(
     needed: Collection[str],
     optional: Collection[str] = (),
 ) -> None:
-    """Make sure that a mapping has no key that nobody would read, then that it has those that are needed.
+    """Make sure that a mapping has no unknown key, then that it has all required ones.
 
     Args:
-        content: What a file holds, or a part of it.
+        content: Contents of a file, or a part of them.
         place: The file, and where in it.
         error: What to raise, with the key that was perhaps meant; made from one sentence.
         needed: Keys that must be there.

@@ -1,4 +1,4 @@
-"""Ctrl-C: it reaches the caller, whatever runs meanwhile makes of it, and what a search has in hand goes with it."""
+"""Ctrl-C reaches the caller even if the running code swallows it, and brings along the best result so far."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Interrupted(KeyboardInterrupt):
     """Ctrl-C, with what was found until then: for whoever wants it; to everybody else it is a ``KeyboardInterrupt``.
 
     Attributes:
-        result: What the call would have returned had its search ended there; it says that it was interrupted.
+        result: The result of the call as if its search had ended there; it is marked as interrupted.
     """
 
     def __init__(self, result: object) -> None:
@@ -26,7 +26,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 def kept(call: Callable[[], T]) -> T:
-    """What a call returns, or at Ctrl-C what it had in hand.
+    """The result of a call, or at Ctrl-C its best so far.
 
     Raises:
         KeyboardInterrupt: If it had nothing yet.
@@ -39,7 +39,7 @@ def kept(call: Callable[[], T]) -> T:
 
 
 def wrapped(search: Callable[[], T], wrap: Callable[[T], U]) -> U:
-    """What a search finds, wrapped; at Ctrl-C what it had in hand is wrapped, too.
+    """The result of a search, wrapped; at Ctrl-C the best so far is wrapped, too.
 
     Raises:
         Interrupted: Ctrl-C, when the search had something in hand.

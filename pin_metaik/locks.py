@@ -34,7 +34,7 @@ def locked(path: Path, *, wait: bool) -> Iterator[None]:
     """Hold the lock of a path, in a folder that is there and can be written.
 
     Args:
-        path: Of the file that is the lock; nobody else needs it.
+        path: Path of the lock file, used for nothing else.
         wait: Whether to wait for another process that holds it.
 
     Raises:

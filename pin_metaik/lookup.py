@@ -1,4 +1,4 @@
-"""What a name stands for in a registry, and whether the packages of an extra are there."""
+"""Looking up a name in a registry, and the packages of an extra."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ T = TypeVar("T")
 
 
 def lookup(kind: str, name: str, registry: Mapping[str, T]) -> T:
-    """What a name stands for.
+    """The entry of a registry by its name.
 
     Args:
-        kind: What is looked for, for the message.
+        kind: Kind of the entry, for the message.
         name: The name.
         registry: By name, all that there are.
 

@@ -16,7 +16,7 @@ class Notice:
     """A line about work that is going on; only written once the work has taken ``WAIT``.
 
     Attributes:
-        text: What is being done, and where its result is kept.
+        text: The work, and where its result is kept.
         total: Of how many steps; 0 if they cannot be counted.
         done: Steps done.
     """
@@ -60,7 +60,7 @@ class Notice:
 
 @contextmanager
 def notice(text: str, total: int = 0) -> Iterator[Notice]:
-    """Say on stderr what is being done, if it takes more than a second.
+    """Announce work on stderr, if it takes more than a second.
 
     Args:
         text: What, e.g. ``"simplifying 50 meshes of talos, once"``.

@@ -1,4 +1,4 @@
-"""Randomness comes in by one door: what somebody gave as ``rng`` becomes a generator once, and is handed down."""
+"""Randomness enters once: the ``rng`` of a caller becomes a generator, and is handed down."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ def as_generator(rng: Rng | tuple[int, ...]) -> np.random.Generator:
 
 
 def as_seed(rng: Rng) -> int | None:
-    """The seed itself, or None; of a generator one number of 62 bits, drawn from it: it is one draw on afterwards.
+    """The seed itself, or None; of a generator one number of 62 bits, drawn from it.
 
-    Who asks a search needs to know how far its generator will be, and that cannot depend on how hard the search is.
+    So the caller's generator is one draw on after a search, however hard that was.
 
     Raises:
         InvalidSetting: If it is neither.

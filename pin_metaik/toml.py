@@ -1,4 +1,4 @@
-"""TOML files: read, and their tables, which know where they are and complain with their place about what is wrong."""
+"""TOML files and their tables; a table names its place in messages about wrong keys and values."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Span: TypeAlias = float | tuple[float, float]
 def read_toml(
     path: Path | Traversable, error: type[MetaIKError] = InvalidTable, number: Callable[[str], Any] = float
 ) -> dict[str, Any]:
-    """What a TOML file holds.
+    """The contents of a TOML file.
 
     Args:
         path: The file.
@@ -36,7 +36,7 @@ def read_toml(
 
 
 class Table:
-    """One table of the file: it knows its place, and complains about keys nobody knows, then about missing ones."""
+    """One table of the file: it knows its place, and refuses unknown keys first, then missing ones."""
 
     def __init__(self, content: object, place: str, needed: tuple[str, ...], optional: tuple[str, ...] = ()) -> None:
         if not isinstance(content, dict):

@@ -17,10 +17,10 @@ class Progress:
     """How far some work is.
 
     Attributes:
-        done: Steps done; what a step is, the function says: evaluations, iterations, cells, targets, rows.
-        total: Steps in all; 0 where nobody knows, as of a search with a budget in seconds.
+        done: Steps done: evaluations, iterations, cells, targets or rows, as the function documents.
+        total: Steps in all; 0 if unknown, as for a search with a budget in seconds.
         best: Cost of the best found so far, where the work has one.
-        label: What is being worked on now.
+        label: The item being worked on.
     """
 
     done: float

@@ -16,7 +16,7 @@ def test_example_runs(example: Path, tmp_path: Path) -> None:
         [sys.executable, example, *SMALLER.get(example.stem, [])],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=300,
         cwd=tmp_path,
         check=False,
     )

@@ -16,14 +16,11 @@ import pin_metaik as mik
 ROOT = Path(__file__).parent.parent
 
 SOLVE = """
-import time
-began = time.perf_counter()
 import pin_metaik as mik
-imported = time.perf_counter() - began
 robot = mik.load_robot("rv7fl_paper")
 result = mik.solve_ik(mik.Chain(robot.model, robot.frame), [0.63925, -0.64594, 0.40079])
 assert result.success and mik.load_robot("panda").model.nq == 8
-print(imported, time.perf_counter() - began, mik.__file__)
+print(mik.__file__)
 """
 
 
@@ -56,9 +53,7 @@ def test_the_first_solve_on_a_machine_compiles_and_says_so(tmp_path: Path) -> No
     assert str(tmp_path) in first.stdout  # the copy, beside which no machine code lies
     assert "compiling inner loops" in first.stderr
     later = run(sys.executable, tmp_path, tmp_path)
-    assert later.stderr == ""
-    # Generous for a loaded machine: benchmarks say under 20 s and 1 s; what is tested is that the cache is used.
-    assert float(later.stdout.split()[1]) < 0.5 * float(first.stdout.split()[1])
+    assert (later.stdout, later.stderr) == (first.stdout, "")
 
 
 @pytest.mark.slow

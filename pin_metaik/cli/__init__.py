@@ -13,7 +13,7 @@ from typer.core import TyperGroup
 from pin_metaik import __version__
 from pin_metaik.cli import compare, demo, plan, reproduce, robots, solve, stewart, warm
 from pin_metaik.cli.codes import INTERRUPTED, NONSENSE
-from pin_metaik.cli.many import ManyValues
+from pin_metaik.cli.options import ManyValues
 from pin_metaik.errors import MetaIKError
 
 
@@ -65,7 +65,7 @@ def main(
 
 
 def run() -> None:
-    """Entry point of the ``pin-metaik`` command: what makes no sense becomes a line; what is left is a bug."""
+    """Entry point of the ``pin-metaik`` command: errors of this package and of files become one line."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("default", UserWarning)
@@ -79,7 +79,7 @@ def run() -> None:
 
 
 def _say(message: Warning | str, *_: object, **__: object) -> None:
-    """A warning as one line: where in this package it arose is no news to who typed a command."""
+    """A warning as one line, without the line of code that raised it."""
     Console(stderr=True).print(f"warning: {message}", style="yellow", markup=False, highlight=False, soft_wrap=True)
 
 

@@ -12,7 +12,7 @@ import typer
 from rich.console import Console
 
 from pin_metaik.cli.codes import INTERRUPTED
-from pin_metaik.cli.many import split
+from pin_metaik.cli.options import split
 from pin_metaik.cli.progress import progress_bar
 from pin_metaik.compare import CASES, Suite, write_report
 from pin_metaik.compare import compare as run
@@ -38,7 +38,7 @@ def compare(
             "ikpy, pink, trac_ik or toolbox if installed; or module:object."
         ),
     ],
-    targets: Annotated[int, typer.Option(min=1, help="Tasks of each case for each robot.")] = 100,
+    tasks: Annotated[int, typer.Option("--tasks", "--targets", min=1, help="Tasks of each case for each robot.")] = 100,
     seeds: Annotated[int, typer.Option(min=1, help="Repetitions of each method on each task.")] = 1,
     budget: Annotated[int, typer.Option(min=1, help="Kernel evaluations for each target.")] = 5000,
     rng: Annotated[int, typer.Option(min=0, help="Seed of everything random.")] = 0,
@@ -48,7 +48,7 @@ def compare(
 ) -> None:
     """Compare methods on hard cases at equal budgets. Ctrl-C loses nothing: the same command goes on."""
     sys.path.insert(0, "")  # module:object may be in the folder one is in
-    suite = Suite(split(robot), split(cases), split(methods), targets, seeds, budget, rng)
+    suite = Suite(split(robot), split(cases), split(methods), tasks, seeds, budget, rng)
     command = join(["pin-metaik", *sys.argv[1:]])
     with progress_bar("comparing") as watch:
         outcome = kept(
@@ -70,7 +70,7 @@ def report(folder: Annotated[Path, typer.Argument(help="Folder of a comparison, 
 
 def replay(
     folder: Annotated[Path, typer.Argument(help="Folder of a comparison.")],
-    trial: Annotated[str, typer.Argument(help="ROBOT/CASE/TARGET/METHOD/SEED, as the report lists them.")],
+    trial: Annotated[str, typer.Argument(help="ROBOT/CASE/TASK/METHOD/SEED, as the report lists them.")],
 ) -> None:
     """Run one trial of a comparison again. Exit code 0: it ends as the row says, 1: it does not."""
     sys.path.insert(0, "")

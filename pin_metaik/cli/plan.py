@@ -155,7 +155,7 @@ def plan(
 
 
 def _warm_up() -> None:
-    """Plan round a box, so that what is compiled and imported once is not in the times shown."""
+    """Plan round a box, so that compiling and importing are not in the times shown."""
     from pin_metaik import mobile
 
     box = mobile.read_polygons([[(1.0, -1.0), (2.0, -1.0), (2.0, 1.0), (1.0, 1.0)]])

@@ -22,7 +22,7 @@ def progress_bar(label: str, console: Console | None = None) -> Iterator[Watch]:
     ``with progress_bar("designing") as watch: design(mechanism, watch=watch)``
 
     Args:
-        label: What is being done, until the work says more.
+        label: Name of the work, shown until its first progress.
         console: Where to draw; default: stderr.
     """
     console = console or Console(stderr=True)

@@ -15,7 +15,7 @@ from rich.console import Console
 from pin_metaik.cli.codes import INTERRUPTED
 from pin_metaik.cli.progress import progress_bar
 from pin_metaik.compare import papers
-from pin_metaik.compare.lock import locked
+from pin_metaik.compare.folder.lock import locked
 from pin_metaik.compare.papers import PAPERS, Options, Reproduction
 from pin_metaik.compare.report.show import show
 from pin_metaik.compare.report.write import need_figures, write

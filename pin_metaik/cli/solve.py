@@ -12,7 +12,7 @@ import typer
 from numpy.typing import NDArray
 from rich.console import Console
 
-from pin_metaik.cli.many import split
+from pin_metaik.cli.options import split
 from pin_metaik.cli.start import configuration, turns
 from pin_metaik.cli.versions import print_json
 from pin_metaik.collision import CollisionWorld, load_scene, scene_names
@@ -116,7 +116,7 @@ def _world(
 
 
 def _warm_up(chain: Chain, target: Target, solver: IKSolver) -> None:
-    """Solve for where the chain is already, so that what is compiled and tabulated once is not in the time shown."""
+    """Solve for the pose that the chain has already, so that compiling and sampling are not in the time shown."""
     pose = chain.placements(chain.reference)[0]
     there = replace(target, pose=pose)
     solve_ik(chain, there, chain.reference, solver=replace(solver, select="first", budget=WARM))
@@ -170,7 +170,7 @@ def _shown(chain: Chain, x: NDArray[np.float64], in_degrees: bool) -> list[float
 
 
 def _angles(chain: Chain, result: IKResult, in_degrees: bool) -> list[float]:
-    """The entries of q; in degrees what is an angle (the cos and sin of a continuous joint stay as they are)."""
+    """The entries of q; angles in degrees (the cosine and sine of a continuous joint are no angles)."""
     q = result.q.tolist()
     if in_degrees:
         for joint in list(chain.model.joints)[1:]:

@@ -14,7 +14,7 @@ SI: Mapping[str, str] = MappingProxyType({"length": "m", "angle": "rad", "time":
 
 
 def versions() -> dict[str, str]:
-    """Of this package and of those whose numbers an answer is."""
+    """Versions of this package and of those that compute its answers."""
     return {"pin_metaik": __version__, **{name: version(name) for name in PACKAGES}}
 
 

@@ -1,4 +1,4 @@
-"""``pin-metaik warm``: what is made once on a machine is made now, for a container or before a demonstration."""
+"""``pin-metaik warm``: compile every loop and lay out every table now, for a container or before a demonstration."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pin_metaik.robots import load_robot
 def warm(
     robot: Annotated[list[str] | None, typer.Option(help="Robots whose meshes are simplified, too.")] = None,
 ) -> None:
-    """Compile every loop, and say what was done and how long it took. What is there already is left alone."""
+    """Compile every loop, and say what was done and how long it took. Loops compiled earlier are left alone."""
     from pin_metaik.compiled import ahead
 
     robots = [load_robot(name) for name in robot or ()]

@@ -1,7 +1,7 @@
 """Many configurations at once, on all cores: in processes, as coal does not let go of Python's interpreter.
 
-Each process has the world as it is at the call. What few configurations ask for is done here: the first tenth of a
-second of checks tells what the rest will take.
+Each process has the world as it is at the call. Few configurations are checked in this process: the time of the rest
+is estimated from the first tenth of a second of checks.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ Ask: TypeAlias = Callable[["CollisionWorld", NDArray[np.float64]], float]
 
 
 def answers(world: CollisionWorld, ask: Ask, Q: NDArray[np.float64], workers: int | None) -> NDArray[np.float64]:
-    """What a world answers (k,) at configurations Q (k, nq), whatever the number of workers.
+    """The answers (k,) of a world at configurations Q (k, nq), the same for any number of workers.
 
     Args:
         world: The world.

@@ -24,7 +24,7 @@ from pin_metaik.said import warn
 
 
 class VisualGeometry(UserWarning):
-    """A robot without collision geometry, which is checked by what it looks like."""
+    """A robot without collision geometry, which is checked by its visual geometry."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +62,7 @@ class Body:
 
 
 class Geometry(Protocol):
-    """What a world needs of a robot: a ``Robot`` has it, or any object of your own with a model and its geometry."""
+    """Attributes of a robot that a world reads: a ``Robot`` has them, or any object with a model and its geometry."""
 
     @property
     def name(self) -> str:
@@ -96,7 +96,7 @@ class _Wrapped:
 
 
 def geometry_of(robot: Geometry) -> Geometry:
-    """What a world needs of a robot, of Pinocchio's ``RobotWrapper`` as well.
+    """The attributes of a robot that a world reads, also of Pinocchio's ``RobotWrapper``.
 
     Raises:
         InvalidSetting: Neither a robot nor anything that has its geometry.

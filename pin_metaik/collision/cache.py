@@ -1,4 +1,4 @@
-"""What is worked out once is kept on disk: arrays under a key that is a digest of what they were worked out from."""
+"""Arrays kept on disk, under a key that is a digest of the data they are computed from."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Checks in three steps: boxes, then coarse solids, then the geometry as it is, which has the last word.
+"""Checks in three steps: boxes, then coarse solids, then the original geometry, which decides.
 
-What is free of the boxes, or of the coarse solids, is free: they enclose. So the answers are those of the original
-geometry at the price, nearly always, of the coarse one.
+No contact between the boxes, or between the coarse solids, implies no contact between the bodies that they enclose. So
+the answers are those of the original geometry, and nearly always cost no more than the coarse one.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ REACH = 0.1, 0.5, math.inf  # m; how far the nearest pair is looked for, when no
 
 @dataclass(frozen=True, eq=False)
 class Checker:
-    """The pairs of bodies that move against each other, and what is asked of each.
+    """The pairs of moving bodies, and how each is checked.
 
     Attributes:
         solids: All bodies; those that move are numbered first.

@@ -1,4 +1,4 @@
-"""What a world says of a configuration: which bodies collide and how deep, or which are nearest and where."""
+"""Results of a check of a configuration: bodies in collision and their depth, or the nearest bodies and points."""
 
 from __future__ import annotations
 

@@ -1,9 +1,17 @@
-"""Laying out the checks of a world: which pairs of bodies are asked about, at which margin, and in which order.
+"""Laying out the checks of a world: which pairs of bodies are checked, at which margin, and in which order.
 
-Pairs that move against each other are sampled once: those that collide most often are asked first; two links that are
-mostly nearer than the margin are built so, and only kept from touching; and where the coarse solids of two bodies
-mostly overlap while the originals do not, they decide nothing and are left out. Against what stands everything that
-moves is asked, if the boxes are near. So a change costs the pairs that are new.
+Pairs of moving bodies are sampled once:
+
+1. Pairs that collide in most samples are checked first.
+2. Two links of the robot that are nearer than the margin in most samples are adjacent by construction: for them the
+   margin is 0.
+3. Where the coarse solids of a pair overlap in most samples, and the original geometry does not, the coarse solids
+   cannot decide, and the original geometry is checked directly.
+
+Pairs of a moving and a fixed body are not sampled:
+
+4. They are checked if their boxes are near.
+5. An obstacle that is added or moved therefore costs its own pairs only.
 """
 
 from __future__ import annotations

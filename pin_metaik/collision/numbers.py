@@ -1,4 +1,4 @@
-"""Numbers that somebody gave: as floats, or as nothing that compares."""
+"""Numbers of a caller as floats, NaN for anything that is no number."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 
 def real(value: object) -> float:
-    """A number as a float; NaN, if it is none: a text, a truth value, something too large for a float."""
+    """A number as a float; NaN for a text, a truth value, or a number too large for a float."""
     try:
         return float(value) if isinstance(value, Real) and not isinstance(value, bool) else math.nan
     except OverflowError:

@@ -1,4 +1,4 @@
-"""How far apart bodies are kept: the margin of all pairs, and what is added to it by name or for one pair."""
+"""Distances kept between bodies: the margin of all pairs, and additions by name or for one pair."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def names_of(key: Key) -> tuple[str, ...]:
 
 
 def read_padding(padding: Mapping[Key, float]) -> dict[Key, float]:
-    """Paddings that somebody gave, the names of a pair in the order of the alphabet.
+    """Paddings of a caller, the names of a pair in alphabetical order.
 
     Raises:
         InvalidSetting: If one is not a finite distance of at least 0 m, or a pair is one name, or there twice.
@@ -50,7 +50,7 @@ def check_padding(padding: Mapping[Key, float], disabled: Mapping[Pair, str]) ->
 
 
 def entries(name: str, padding: float | Mapping[str, float]) -> dict[Key, float]:
-    """What the padding of one body says: a distance to all others, or one to each that it names, m."""
+    """The padding of one body: a distance to all others, or one to each body by name, m."""
     if isinstance(padding, Mapping):
         return {pair_of(name, other): distance for other, distance in padding.items()}
     return {name: padding} if padding else {}

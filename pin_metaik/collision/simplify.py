@@ -36,8 +36,8 @@ class Solid:
 
     Attributes:
         original: As the robot's file or the user has it; a mesh is a surface, not a solid.
-        hull: Its convex hull; what is no mesh stays as it is.
-        coarse: What is checked first.
+        hull: Its convex hull; the shape itself, if it is no mesh.
+        coarse: The solid that is checked first.
         offset: Placement of ``coarse`` in the frame of the others.
     """
 
@@ -53,7 +53,7 @@ class Solid:
 
     @cached_property
     def interior(self) -> Interior:
-        """What the original, if it is a mesh, has inside."""
+        """The interior of the original, if it is a mesh."""
         return Interior.of(self.original)
 
 

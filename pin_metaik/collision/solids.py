@@ -52,7 +52,7 @@ class Levels(NamedTuple):
         first: The level that is asked first, against a body with thickness and against one that is flat.
         last: The level that has the last word, against the same two.
         hull: Its hull.
-        fine: The geometry as it is.
+        fine: The original geometry.
         flat: Whether it is a half-space or a plane, which meets a mesh exactly where it meets its hull.
     """
 
@@ -269,7 +269,7 @@ class Placed:
 
 
 class _Made(dict[int, Levels]):
-    """What is made of a number when it is first asked for."""
+    """Values by number, each computed at first use."""
 
     def __init__(self, make: Callable[[int], Levels]) -> None:
         super().__init__()

@@ -66,7 +66,7 @@ class WorldViewer(ViserVisualizer):  # type: ignore[misc]  # Pinocchio has no ty
         _put(self.viewer.scene.add_frame(f"target/{name}", axes_length=AXES, axes_radius=AXES / 12.0), at)
 
     def picture(self, width: int = 960, height: int = 720, timeout: float = 60.0) -> NDArray[np.uint8]:
-        """What the first browser that looks sees, once it has drawn everything: red, green and blue (height, width, 3).
+        """The image in the first browser, once it has drawn everything: red, green and blue (height, width, 3).
 
         Args:
             width: In pixels.
@@ -175,9 +175,9 @@ def open_viewer(world: CollisionWorld, port: int = 8080, frame: str | None = Non
 
 
 def _scene(world: CollisionWorld) -> tuple[pin.GeometryModel, dict[str, str]]:
-    """What the robot looks like, what it holds and what stands around; and by piece the name of its body.
+    """The pieces to draw of the robot, of grasped objects and of obstacles, and the body of each piece by name.
 
-    A link that nobody can see, but that is checked, is drawn as it is checked.
+    A link without visual geometry is drawn by its collision geometry.
     """
     frames, seen = world.model.frames, getattr(world.robot, "visual_model", None)
     scene = pin.GeometryModel() if seen is None else seen.clone()

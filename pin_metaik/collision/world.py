@@ -1,4 +1,4 @@
-"""The world a robot moves in: its own links, what it holds, and what stands around, checked by coal."""
+"""The world of a robot: its links, grasped objects and obstacles, checked by coal."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from pin_metaik.output import writable
 
 @checked
 class CollisionWorld:
-    """Collisions of a robot with itself, with obstacles, and of what it has grasped with both.
+    """Collisions of a robot with itself and with obstacles, and of grasped objects with both.
 
     Bodies collide when they are no farther apart than the margin, to a micrometre, or one is inside the other. The
     geometry as it was given decides. A mesh is solid where it is closed: every edge of a part of it, triangles that
@@ -48,8 +48,8 @@ class CollisionWorld:
         model: Its model, which configurations are of.
         margin: Distance at or below which two bodies collide, m.
         padding: What is added to it, m, by name or pair of names.
-        simplify: What is checked first.
-        exact: Whether the original geometry confirms what the simplified one finds.
+        simplify: The simplified geometry that is checked first.
+        exact: Whether the original geometry confirms collisions of the simplified one.
         obstacles: What stands in the world.
         grasped: What the robot holds: an obstacle, posed in the frame whose name comes with it.
         disabled: The pairs that are not checked, with the reason.
@@ -258,7 +258,7 @@ class CollisionWorld:
 
     @property
     def checker(self) -> Checker:
-        """The checks as they are laid out now."""
+        """The current checks."""
         if self._checker is None:
             held = {obstacle.name for obstacle, _ in self.grasped}
             others = self._others.items()

@@ -1,16 +1,15 @@
 """Experiments side by side: methods on hard cases at equal budgets, and papers next to their printed tables."""
 
-from pin_metaik.compare.case import Attempt, Case, Task
 from pin_metaik.compare.cases import CASES
-from pin_metaik.compare.method import Answer, Method
+from pin_metaik.compare.cases.case import Attempt, Case, Task
 from pin_metaik.compare.methods import METHODS, Search
-from pin_metaik.compare.replay import Replay, replay
+from pin_metaik.compare.methods.method import Answer, Method
 from pin_metaik.compare.report.comparison import write_report
-from pin_metaik.compare.results import Results, Summary, summarise
-from pin_metaik.compare.run import Outcome, compare
-from pin_metaik.compare.store import read_results
-from pin_metaik.compare.suite import Suite
-from pin_metaik.compare.trial import Trial
+from pin_metaik.compare.results.results import Results, Summary, read_results, summarise
+from pin_metaik.compare.running.replay import Replay, replay
+from pin_metaik.compare.running.run import Outcome, compare
+from pin_metaik.compare.trials.suite import Suite
+from pin_metaik.compare.trials.trial import Trial
 
 __all__ = [
     "CASES",

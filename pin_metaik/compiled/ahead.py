@@ -1,4 +1,4 @@
-"""Compiling every loop before anybody waits for it, on all cores."""
+"""Compiling every loop ahead of its first call, on all cores."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Version:
 
 
 def versions() -> tuple[list[Version], list[str]]:
-    """All of them, and what is missing because an optional dependency is, with how to install it."""
+    """All loops, and for each optional dependency that is missing a line with its extra."""
     missing: dict[str, None] = {}
     for module in modules():
         try:
@@ -59,7 +59,7 @@ def folder_for(loops: list[Version]) -> Path | None:
     """The folder, or the one above the folders, that their machine code is written to.
 
     Raises:
-        CannotWrite: There is none for one of them.
+        CannotWrite: No folder for the machine code of one of them can be written.
     """
     folders = [kept_in(Path(str(sys.modules[loop.module].__file__))) for loop in loops]
     if None in folders:

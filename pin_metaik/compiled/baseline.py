@@ -1,4 +1,4 @@
-"""The processor that machine code in a wheel is made for: one whose instructions all but old machines have."""
+"""The processor that machine code in a wheel is made for: its instructions are those of all but old machines."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ APPLE_M1 = Baseline("apple-m1", frozenset({"neon", "dotprod", "fullfp16", "lse",
 
 @cache
 def baseline() -> Baseline | None:
-    """Of this machine's architecture; None: there is none, or this machine is older."""
+    """Of this machine's architecture; None: no baseline is known, or this machine is older."""
     match platform.machine().lower():
         case "x86_64" | "amd64":
             processor = X86_64_V3

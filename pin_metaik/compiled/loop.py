@@ -29,7 +29,7 @@ NOTICE = (
 
 
 def kept(**options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Numba's dispatcher of a function, whose machine code is kept on disk."""
+    """Numba's dispatcher of a function; the machine code is cached on disk."""
 
     def dispatcher(function: Callable[..., Any]) -> Any:
         loop = numba.njit(**options)(function)
@@ -99,7 +99,7 @@ class Loop:
 
 @cache
 def _tell() -> None:
-    """Say, once a process, what the wait is for."""
+    """Announce the compilation, once a process."""
     print(NOTICE, file=sys.stderr, flush=True)
 
 

@@ -130,7 +130,7 @@ class Shelf(caching.FunctionCache):
 
 
 class Shipped(Shelf):
-    """Code that came with the package, for a processor whose instructions this one has."""
+    """Machine code that came with the package, for a processor with a subset of the instructions of this one."""
 
     def __init__(self, function: Callable[..., Any], folder: Path, processor: Baseline) -> None:
         super().__init__(function, folder)

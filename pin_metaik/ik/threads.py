@@ -1,4 +1,4 @@
-"""Work shared out among threads."""
+"""A thread pool whose caller works, too."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ class Helper(Thread):
 
 
 def run_parallel(work: Callable[[T], None], parts: Iterable[T], workers: int) -> None:
-    """Do the work for all parts, this thread and others each taking the next part when they are free.
+    """Do the work for all parts: each thread, the calling one included, takes the next part when it has finished one.
 
     The calling thread works, too, instead of waiting: waking it for every result would contend for the interpreter.
-    Ctrl-C reaches the main thread only, which stops the others; what any of them raises ends the work, too.
+    Ctrl-C reaches the main thread only, which stops the others; an exception in any thread ends the work, too.
     """
     waiting = iter(list(parts))  # of a list, threads may take from it without a lock
 

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, checked, shown
 from pin_metaik.errors import FixedFrame, InvalidConfiguration, InvalidSetting, InvalidTarget
-from pin_metaik.kinematics.atlas import SEED, Atlas, chart, no_samples
 from pin_metaik.kinematics.closed_form import NOMINAL, closed_form
+from pin_metaik.kinematics.frame_fk import FrameFK, PinocchioData
 from pin_metaik.kinematics.kernel.layout import LEAF, REACH, Entries, Floats, Ints, Packed, Samples, pack
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.model import (
@@ -30,12 +30,12 @@ from pin_metaik.kinematics.model import (
     neutral_inside,
 )
 from pin_metaik.kinematics.own_limits import with_own
-from pin_metaik.kinematics.paths import Motion, base_moves, lay_paths, leader_of, motions_of
-from pin_metaik.kinematics.placing import Placing, Scratch
+from pin_metaik.kinematics.paths import Motion, base_moves, chain_arrays, leader_of, motions_of
 from pin_metaik.kinematics.proofs.arm import WHOLE, Free, ProofArm, proof_arm
 from pin_metaik.kinematics.proofs.boxes import TINY, Boxes
 from pin_metaik.kinematics.proofs.closed_forms import ClosedFormProof
 from pin_metaik.kinematics.reach import Reach, reach_of
+from pin_metaik.kinematics.sample_table import SEED, SampleTable, build_table, no_samples
 from pin_metaik.optimize import Box
 from pin_metaik.optimize.settings import few
 from pin_metaik.randomness import DEFAULT_SEED, as_generator
@@ -75,9 +75,9 @@ class Chain:
     """The joints on the way to one or several frames of a ``pin.Model``, as n coordinates with limits.
 
     A coordinate is a revolute, prismatic or continuous joint; joints that mimic another follow it; everything else is
-    held. What a chain knows of its frames (``paths``, ``poses``, ``reach``, ``atlas``, ``branches``) is true while the
-    held joints are where ``reference`` has them; ``at(q)`` is the same chain with those joints where q has them, and is
-    what every solver works on. The model is only read, never written to.
+    held. ``paths``, ``poses``, ``reach``, ``sample_table`` and ``branches`` are valid for the held joints at
+    ``reference``; ``at(q)`` is the same chain with the held joints at q, and solvers work on that one. The model is
+    read, never written to.
 
     Attributes:
         model: The model.
@@ -153,8 +153,8 @@ class Chain:
         self._least[entries], self._most[entries] = self.limits.lower[plain], self.limits.upper[plain]
         self.has_pose_solver = len(self.frames) == 1 and not self.limits.rigid
         self.kernels = _kernels()
-        self._own = Scratch(model)
-        self.tip = Placing(model, self.frame_ids[0])
+        self._own = PinocchioData(model)
+        self.tip = FrameFK(model, self.frame_ids[0])
         self._samples: dict[tuple[int, tuple[int, ...]], NDArray[np.float64]] = {}
         self._original, self._elsewhere, self._lock = self, dict[bytes, Chain](), Lock()
         self._hold(self.configuration(neutral_inside(model) if reference is None else reference))
@@ -162,7 +162,7 @@ class Chain:
     def _limits(
         self, motions: dict[int, tuple[Motion, ...]], drivers: list[int], given: dict[str, tuple[float, float]]
     ) -> Limits:
-        """Limits of the coordinates, with those that somebody gave for them or for joints that follow them."""
+        """Limits of the coordinates, with those of the caller for them or for joints that follow them."""
         model = self.model
         followers = self.movers.difference(drivers)
         alike = {j for j in followers if [(m.rotates, m.scale) for m in motions.get(j, ())] == [(True, 1.0)]}
@@ -181,7 +181,7 @@ class Chain:
         """Fold the held joints into the way to the frames, where ``reference`` (nq,) has them."""
         check_turns(self.model, self._held_joints, reference)
         self.reference = reference
-        self.paths = lay_paths(self.model, self.data, self.frame_ids, self._columns, self._motions, reference)
+        self.paths = chain_arrays(self.model, self.data, self.frame_ids, self._columns, self._motions, reference)
         self._moves = None if self is self._original else base_moves(self._original.paths, self.paths)
         self._reaches: dict[tuple[int, bool], Reach] = {}
         self._proof_arms: dict[tuple[int, Free], ProofArm | None] = {}
@@ -257,7 +257,7 @@ class Chain:
         return self.coordinates.read(self._like("q", q))
 
     def configuration(self, q: ArrayLike) -> NDArray[np.float64]:
-        """A configuration (nq,) somebody gave: checked, and with every joint brought inside its limits.
+        """A configuration (nq,) of the caller: checked, and with every joint brought inside its limits.
 
         Raises:
             InvalidConfiguration: If its length is not nq or an entry is not finite.
@@ -269,7 +269,7 @@ class Chain:
         return np.minimum(np.maximum(self._like("q", q), self._least), self._most)
 
     def _like(self, name: str, q: ArrayLike, shape: tuple[int, ...] | None = None) -> NDArray[np.float64]:
-        """Configurations (..., nq) somebody gave; if a shape is asked for, of that, or one (nq,) for all."""
+        """Configurations (..., nq) of the caller, checked; with a shape, of that shape, or one (nq,) for all."""
         given = array(name, q, "...", self.model.nq, error=InvalidConfiguration, finite=False)
         return given if shape is None or given.ndim == 1 else array(name, given, *shape, error=InvalidConfiguration)
 
@@ -283,19 +283,19 @@ class Chain:
         return self.limits.box()
 
     @cached_property
-    def atlas(self) -> Atlas:
+    def sample_table(self) -> SampleTable:
         """Sampled configurations to look a pose up in; made on first use, in about 5 ms, always the same.
 
         Where held joints only move the chain as a whole, as those before the first one of it do, its table is moved.
         """
         if self._moves is not None:
-            return self._original.atlas.moved(self._moves)
+            return self._original.sample_table.moved(self._moves)
         X = self.limits.one_turn().box().sample(np.random.default_rng(SEED), LEAF * LEAF)
-        return chart(X, self.poses(X), self._gains)
+        return build_table(X, self.poses(X), self._gains)
 
     @cached_property
     def form(self) -> NDArray[np.float64]:
-        """What the arm's closed form needs to know of it; no rows, if it has none."""
+        """The parameters of the arm's closed form; no rows, if it has none."""
         return closed_form(self.paths)
 
     @cached_property
@@ -305,7 +305,7 @@ class Chain:
 
     @cached_property
     def nominal_proof(self) -> ClosedFormProof | None:
-        """The same by the closed form that an arm would have whose joints were not off their place by a little."""
+        """The same by the closed form of the nominal arm, of which this one is a slightly displaced copy."""
         if len(self.form):
             return self.form_proof
         nominal = closed_form(self.paths, NOMINAL)
@@ -355,7 +355,7 @@ class Chain:
         return out[: self.kernels.all_branches(self.form, self.paths.wiring, *self.limits.arrays, pose, x0, out)]
 
     def _gains(self, X: NDArray[np.float64]) -> NDArray[np.float32]:
-        """Gains (k, n, 6) for the atlas at coordinates X (k, n); zero for a chain with several frames."""
+        """Gains (k, n, 6) for the sample table at coordinates X (k, n); zero for a chain with several frames."""
         gains = np.zeros((*X.shape, 6), np.float32)
         if len(self.frames) == 1:
             self.kernels.gains_of(self.bare, X, gains)
@@ -368,8 +368,8 @@ class Chain:
 
     @cached_property
     def block(self) -> Floats:
-        """The same with the samples of the atlas, and what bounds the reach of a chain with one frame and solves it."""
-        samples = self.atlas.samples  # first of all: it says so where a joint has no limits
+        """The same with the sample table, and what bounds the reach of a chain with one frame and solves it."""
+        samples = self.sample_table.samples  # first of all: it says so where a joint has no limits
         reach = self.reach(0, oriented=True).array if self.has_pose_solver else np.zeros(REACH)
         return self._packed(reach, self.form, samples)
 
@@ -387,7 +387,7 @@ class Chain:
     @cached_property
     def position_solver(self) -> PoseSolver:
         """The same for positions at any orientation."""
-        samples = self.atlas.samples
+        samples = self.sample_table.samples
         block = self._packed(self.reach(0, oriented=False).array, self.form, samples)
         return self._solver(block, oriented=False)
 

@@ -1,4 +1,4 @@
-"""Which axes of an arm meet and which are parallel: what a closed form of its inverse kinematics has to know.
+"""The parameters of a closed form of an arm's inverse kinematics: which axes meet and which are parallel.
 
 Two kinds of arms of six turning joints have the same one (see ``kernel.closed_form``): those with a wrist whose three
 axes meet behind two parallel ones, like most industrial arms, and those with three parallel axes and two that meet,
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.kinematics.kernel.layout import COLUMN, POSE, ROTATES
-from pin_metaik.kinematics.paths import Paths, matrix_of
+from pin_metaik.kinematics.paths import ChainArrays, matrix_of
 
 CLOSE = 1e-6  # m or rad: axes this near to each other meet, or are parallel; a descent removes the error that leaves
 NOMINAL = 5e-3  # ... of an arm that was measured: its closed form no longer solves, but still proves
@@ -19,7 +19,7 @@ NOMINAL = 5e-3  # ... of an arm that was measured: its closed form no longer sol
 Floats = NDArray[np.float64]
 
 
-def closed_form(paths: Paths, close: float = CLOSE) -> Floats:
+def closed_form(paths: ChainArrays, close: float = CLOSE) -> Floats:
     """The closed form (16, 3), or no rows (0, 3) for an arm of neither kind; ``kernel.layout`` names its rows.
 
     ``close`` (m or rad) is how near axes meet, or are parallel. The rows, in the configuration where all angles are 0,

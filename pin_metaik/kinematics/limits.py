@@ -24,9 +24,9 @@ class Limits:
     """Lower and upper limits of n joint coordinates.
 
     Attributes:
-        lower: (n,) rad or m, ``-inf`` where there is none.
-        upper: (n,) rad or m, ``inf`` where there is none.
-        velocity: (n,) rad/s or m/s, ``inf`` where there is none.
+        lower: (n,) rad or m, ``-inf`` without a limit.
+        upper: (n,) rad or m, ``inf`` without a limit.
+        velocity: (n,) rad/s or m/s, ``inf`` without a limit.
         rotates: (n,) True for an angle, False for a travel.
         winds: (n,) True for an angle that a whole turn does not change and whose limits leave room for one.
         names: The joint of each coordinate, for messages.
@@ -144,7 +144,7 @@ class Limits:
         )
 
     def _given(self, name: str, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Coordinates (..., n) somebody gave."""
+        """Coordinates (..., n) of the caller, checked."""
         return array(name, x, "...", len(self.names), finite=False)
 
     @checked_as(InvalidBounds)

@@ -1,4 +1,4 @@
-"""What a chain reads from a Pinocchio model: ids by name, limits, and which entries of q its coordinates are."""
+"""Data that a chain reads from a Pinocchio model: ids by name, limits, and which entries of q its coordinates are."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def coordinates_of(model: pin.Model, drivers: list[int]) -> Coordinates:
 
 
 def limits_of(model: pin.Model, drivers: list[int], names: tuple[str, ...], mimicked: set[int]) -> Limits:
-    """Their limits; those ``mimicked`` do not wind, for the joints that follow them might not."""
+    """Limits of the driving joints. A ``mimicked`` joint is not multi-turn, because its followers may not be."""
     lower = finite_or_infinite([model.lowerPositionLimit[model.joints[j].idx_q] for j in drivers])
     upper = finite_or_infinite([model.upperPositionLimit[model.joints[j].idx_q] for j in drivers])
     velocity = finite_or_infinite([model.upperVelocityLimit[model.joints[j].idx_v] for j in drivers])

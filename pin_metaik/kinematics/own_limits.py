@@ -1,4 +1,4 @@
-"""Limits of one's own in place of the model's: taken as they are, with a word where they are hardly meant."""
+"""Limits of the caller in place of the model's: taken unchanged, with a warning where they look like a mistake."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ RIGID = 1e-12  # of R'R, by how much a rotation of double precision may miss the
 
 
 @dataclass(frozen=True, eq=False)
-class Paths:
+class ChainArrays:
     """The way from the world to each of T tips, over S joints, in n coordinates; see ``kernel.layout``."""
 
     joints: NDArray[np.float64]  # (S, 14)
@@ -132,10 +132,10 @@ def matrix_of(flat: NDArray[np.float64]) -> NDArray[np.float64]:
     return matrix
 
 
-def base_moves(before: Paths, after: Paths) -> NDArray[np.float64] | None:
+def base_moves(before: ChainArrays, after: ChainArrays) -> NDArray[np.float64] | None:
     """How each tip's path is moved as a whole, (T, 4, 4), if the two differ in nothing but where the paths begin.
 
-    None if they differ in more, or are moved by what is not quite a rotation.
+    None if they differ in more, or if a move is not quite a rotation.
     """
     first = before.ends[:-1]
     rest = np.delete(before.joints, first, axis=0), np.delete(after.joints, first, axis=0)
@@ -147,14 +147,14 @@ def base_moves(before: Paths, after: Paths) -> NDArray[np.float64] | None:
     return moves if np.abs(turns.transpose(0, 2, 1) @ turns - np.eye(3)).max() < RIGID else None
 
 
-def lay_paths(
+def chain_arrays(
     model: pin.Model,
     data: pin.Data,
     frames: Sequence[int],
     columns: dict[int, int],
     motions: dict[int, tuple[Motion, ...]],
     reference: NDArray[np.float64],
-) -> Paths:
+) -> ChainArrays:
     """Walk from the world to each frame; joints without a column are folded in where ``reference`` (nq,) has them."""
     pin.forwardKinematics(model, data, reference)
     joints, wiring, ends, tips = [], [], [0], []
@@ -172,4 +172,6 @@ def lay_paths(
                 placement = turn.inverse()
         ends.append(len(joints))
         tips.append(flat(placement * model.frames[frame].placement))
-    return Paths(np.array(joints), np.array(wiring, dtype=np.int64), np.array(ends, dtype=np.int64), np.array(tips))
+    return ChainArrays(
+        np.array(joints), np.array(wiring, dtype=np.int64), np.array(ends, dtype=np.int64), np.array(tips)
+    )

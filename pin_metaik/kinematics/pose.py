@@ -1,4 +1,4 @@
-"""Poses as 4x4 matrices: what is accepted, and how far two of them are apart."""
+"""Poses as 4x4 matrices: the types accepted, and the distance between two poses."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Pose(NamedTuple):
 
 
 def as_pose(pose: pin.SE3 | ArrayLike) -> Pose:
-    """A pose that somebody gave, checked.
+    """A pose of the caller, checked.
 
     Args:
         pose: A ``pin.SE3`` or a 4x4 homogeneous matrix.
@@ -54,7 +54,7 @@ def _from_matrix(pose: ArrayLike) -> pin.SE3:
 
 
 def _complaint(rotation: NDArray[np.float64]) -> str:
-    """What is wrong with a rotation matrix."""
+    """The defect of a rotation matrix, in words."""
     defect = float(np.abs(rotation.T @ rotation - np.eye(3)).max())
     if defect > ORTHONORMAL:
         return f"the rotation of a pose is orthonormal; R'R is off by {defect:.3g} in\n{rotation}"

@@ -1,13 +1,18 @@
 """How far a chain can reach at most and at least: a proof that some targets have no solution.
 
-The axis of a rotating joint does not move when that joint turns, so any point of it is a knot that two links share.
-Between knots the chain is a polygon of links whose lengths are known, and no polygon spans more than the sum of its
-links, or less than its longest link less all the others. Where the knots are put on their axes is free: they are put
-where the sum is least. With the whole pose given, the last knot is known too, and the last link drops out: for an arm
-with a spherical wrist this is the distance of the wrist from the shoulder.
+Put a knot K_i on the axis of each rotating joint i. The axis does not move when its joint turns, so the distance
+l_i = |K_i K_i+1| does not depend on the configuration (up to the travel of sliding joints between, which widens it to
+l_i +- s_i). By the triangle inequality the distance D from the first knot K_1 to the last K_m satisfies
 
-That holds in real numbers, of rotations that are orthonormal. What digits and placements that are not quite rotations
-may change is added to the bounds, so that they stay a proof: see ``_doubt`` and ``misshape``.
+    D <= sum_i (l_i + s_i)
+    D >= max_i (l_i - s_i) - sum_(j != i) (l_j + s_j)
+
+in every configuration. The knots may lie anywhere on their axes; they are put where the sum is least. Of a position
+K_m is the target point. Of a whole pose it is the last knot, which the pose places, and the last link drops out: for
+an arm with a spherical wrist D is the distance of the wrist from the shoulder.
+
+The inequalities hold for real numbers and orthonormal rotations. Rounding, and placements that are not quite rotations,
+widen the bounds, so that they stay a proof: see ``_widening`` and ``misshape``.
 """
 
 from __future__ import annotations
@@ -20,7 +25,7 @@ from numpy.typing import NDArray
 
 from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, ROUNDING, SCALE, SHIFT
 from pin_metaik.kinematics.limits import Limits
-from pin_metaik.kinematics.paths import Paths, matrix_of
+from pin_metaik.kinematics.paths import ChainArrays, matrix_of
 
 DIGITS = 64.0 * float(np.finfo(float).eps)  # of a sum of a few products, for each joint
 SWEEPS = 50
@@ -28,7 +33,7 @@ SWEEPS = 50
 
 @dataclass(frozen=True)
 class Link:
-    """From knot u on one axis (u z) to knot v on the next: offset + v axis - u z, give or take ``slack`` (m)."""
+    """From knot u on one axis (u z) to knot v on the next: offset + v axis - u z, known up to ``slack`` (m)."""
 
     offset: NDArray[np.float64]
     axis: NDArray[np.float64]
@@ -54,8 +59,8 @@ class Reach:
     def moved(self, move: NDArray[np.float64]) -> Reach:
         """The same bounds for a chain moved as a whole by (4, 4)."""
         anchor = move[:3, :3] @ self.anchor + move[:3, 3]
-        doubt = DIGITS * float(np.linalg.norm(anchor))
-        return Reach(anchor, self.end, max(0.0, self.least - doubt), self.most + doubt)
+        rounding = DIGITS * float(np.linalg.norm(anchor))
+        return Reach(anchor, self.end, max(0.0, self.least - rounding), self.most + rounding)
 
     @property
     def array(self) -> NDArray[np.float64]:
@@ -81,24 +86,24 @@ def misshape(rotation: NDArray[np.float64]) -> float:
     return float(np.linalg.norm(rotation.T @ rotation - np.eye(3)))
 
 
-def reach_of(paths: Paths, limits: Limits, tip: int, oriented: bool) -> Reach:
+def reach_of(paths: ChainArrays, limits: Limits, tip: int, oriented: bool) -> Reach:
     """Bounds for one tip; ``oriented`` says that targets fix all of the orientation, not only the position."""
     links, last, closing = links_of(paths, limits.lower, limits.upper, tip)
     if not links:  # nothing turns: a gantry
-        return Reach(last.offset, np.zeros(3), 0.0, last.slack + _doubt(paths, tip, [last], np.zeros(1)))
+        return Reach(last.offset, np.zeros(3), 0.0, last.slack + _widening(paths, tip, [last], np.zeros(1)))
     # Knot i is on axis i; link 0 only places the first axis in the world.
     spanning = links[1:] if oriented else [*links[1:], last]
     knots, spans = tightened(spanning, len(links))
     slack = links[0].slack + last.slack + sum(link.slack for link in links[1:])
-    slack += _doubt(paths, tip, [*links, last], knots)
+    slack += _widening(paths, tip, [*links, last], knots)
     most = float(spans.sum()) + slack
     least = max(0.0, 2.0 * float(spans.max(initial=0.0)) - float(spans.sum()) - slack)
     end = closing[:3, :3].T @ (np.array([0.0, 0.0, knots[-1]]) - closing[:3, 3]) if oriented else np.zeros(3)
     return Reach(links[0].offset + knots[0] * links[0].axis, end, least, most)
 
 
-def _doubt(paths: Paths, tip: int, links: list[Link], knots: NDArray[np.float64]) -> float:
-    """By how much (m) rounding, and placements that are not quite rotations, may change the sum of the links."""
+def _widening(paths: ChainArrays, tip: int, links: list[Link], knots: NDArray[np.float64]) -> float:
+    """The most (m) by which rounding, and placements that are not quite rotations, change the sum of the links."""
     size = 2.0 * float(np.abs(knots).sum()) + sum(float(np.linalg.norm(link.offset)) + link.slack for link in links)
     rows = [*paths.joints[paths.ends[tip] : paths.ends[tip + 1]], paths.tips[tip]]
     stretch = sum(misshape(matrix_of(row)[:3, :3]) for row in rows)
@@ -126,7 +131,7 @@ def tightened(links: list[Link], count: int) -> tuple[NDArray[np.float64], NDArr
 
 
 def links_of(
-    paths: Paths, lower: NDArray[np.float64], upper: NDArray[np.float64], tip: int
+    paths: ChainArrays, lower: NDArray[np.float64], upper: NDArray[np.float64], tip: int
 ) -> tuple[list[Link], Link, NDArray[np.float64]]:
     """The link before each rotating joint, the one from the last to the tip, and that one's placement (4, 4).
 

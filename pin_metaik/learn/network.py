@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -77,18 +78,10 @@ class Network:
         w, X = self._given(w, X)
         activations = self._forward(w, X)
         J = np.empty((len(X), self.count))
-        delta = np.ones((len(X), 1))  # of the output by what a layer's neurons sum up
-        at = self.count
-        layers = self._layers(w)
-        for layer in reversed(range(len(layers))):
-            W, _ = layers[layer]
-            a = activations[layer]
-            at -= len(W)
-            J[:, at : at + len(W)] = delta
-            at -= W.size
-            np.multiply(delta[:, :, None], a[:, None, :], out=J[:, at : at + W.size].reshape(len(X), *W.shape))
-            if layer:
-                delta = (delta @ W) * (1 - a**2)
+        for weights, biases, a, delta in self._backward(w, activations, np.ones((len(X), 1))):
+            J[:, biases] = delta
+            shape = delta.shape[1], a.shape[1]
+            np.multiply(delta[:, :, None], a[:, None, :], out=J[:, weights].reshape(len(X), *shape))
         return J
 
     def gradient(self, w: Array, X: Array, y: Array) -> tuple[float, Array]:
@@ -97,22 +90,29 @@ class Network:
         activations = self._forward(w, X)
         error = activations[-1] - array("y", y, len(X), finite=False)[:, None]
         gradient = np.empty(self.count)
-        delta = 2 / max(len(X), 1) * error
-        at = self.count
-        layers = self._layers(w)
-        for layer in reversed(range(len(layers))):
-            W, _ = layers[layer]
-            a = activations[layer]
-            at -= len(W)
-            gradient[at : at + len(W)] = delta.sum(axis=0)
-            at -= W.size
-            gradient[at : at + W.size] = (delta.T @ a).ravel()
-            if layer:
-                delta = (delta @ W) * (1 - a**2)
+        for weights, biases, a, delta in self._backward(w, activations, 2 / max(len(X), 1) * error):
+            gradient[biases] = delta.sum(axis=0)
+            gradient[weights] = (delta.T @ a).ravel()
         return float(np.mean(np.square(error))), gradient
 
+    def _backward(
+        self, w: Array, activations: list[Array], delta: Array
+    ) -> Iterator[tuple[slice, slice, Array, Array]]:
+        """Backpropagation, from the last layer to the first.
+
+        Yields where the weights and the biases of a layer are in w, its inputs (n, into), and the derivatives
+        (n, neurons) by the sums in its neurons; ``delta`` are those of the last layer.
+        """
+        end = self.count
+        for layer, (W, _) in reversed(list(enumerate(self._layers(w)))):
+            a, middle, start = activations[layer], end - len(W), end - len(W) - W.size
+            yield slice(start, middle), slice(middle, end), a, delta
+            end = start
+            if layer:
+                delta = (delta @ W) * (1 - a**2)
+
     def _given(self, w: Array, X: Array) -> tuple[Array, Array]:
-        """Weights (count,) and inputs (n, inputs) that somebody gave."""
+        """Weights (count,) and inputs (n, inputs) of a caller, checked."""
         return array("w", w, self.count, finite=False), array("X", X, "n", self.inputs, finite=False)
 
     def _layers(self, w: Array) -> list[tuple[Array, Array]]:

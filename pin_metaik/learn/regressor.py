@@ -1,4 +1,4 @@
-"""A network fitted to data: scaling, training, and a warning when it is asked about what it never saw."""
+"""A network fitted to data: scaling, training, and a warning for inputs outside the training data."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Scale:
 
     @property
     def half(self) -> Array:
-        """Half of the range (d,); 1 where there is none."""
+        """Half of the range (d,); 1 for a constant input."""
         width = np.asarray(self.upper - self.lower)
         return np.where(width > 0, width / 2, 1.0)
 
@@ -107,7 +107,7 @@ class Regressor:
         return np.asarray((np.abs(self.inputs.down(self._given(X))) <= 1 + EDGE).all(axis=1))
 
     def _given(self, X: Array) -> Array:
-        """Inputs (n, d) that somebody gave."""
+        """Inputs (n, d) of a caller, checked."""
         return array("X", X, "n", self.network.inputs, finite=False)
 
 

@@ -18,7 +18,7 @@ class Blocked(MetaIKError):
         role: ``"start"`` or ``"goal"``; ``"curve"`` of ``Obstructed``.
         point: Where it is (x, y).
         clearance: Distance it should keep from obstacles and walls.
-        nearest: The nearest place (x, y) that would have worked; None if there is none at all.
+        nearest: The nearest place (x, y) that would have worked; None if no place would.
         join: None, or how grown obstacles end at their corners, if it keeps the clearance and only that covers it.
     """
 

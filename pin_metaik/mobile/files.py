@@ -11,7 +11,7 @@ from pin_metaik.lookup import need
 
 
 def read_yaml(path: Path, error: Error) -> Any:
-    """What a YAML file holds, plain values only.
+    """The contents of a YAML file, plain values only.
 
     Args:
         path: The file.
@@ -34,7 +34,7 @@ def number(mapping: Mapping[str, Any], key: str, place: str, error: Error) -> fl
     """The finite number at a key.
 
     Args:
-        mapping: What a file holds.
+        mapping: Contents of a file.
         key: It is there.
         place: The file.
         error: What to raise if it is no such number.

@@ -50,7 +50,7 @@ class AskTell:
         keep: How many of the best points to remember in `elite`.
 
     Attributes:
-        run: What the algorithm sees, with the evaluations spent.
+        run: The run as the algorithm sees it, with the evaluations spent.
         elite: The best points so far.
         status: Why it ended; None while it runs.
         generations: How many batches were told.
@@ -142,7 +142,7 @@ class AskTell:
         return None
 
     def _propose(self, costs: Array | None) -> None:
-        """Let the algorithm move on, and take from its next population what the budget still allows."""
+        """Let the algorithm move on, and take as much of its next population as the budget still allows."""
         try:
             proposed = next(self._generator) if costs is None else self._generator.send(costs)
         except StopIteration:

@@ -26,7 +26,7 @@ class CMAES:
     Attributes:
         agents: Population of the first run; None for the package's ``4 + 3 ln n``.
         sigma: First step size as a share of the width of the box.
-        growth: By what the population grows at a restart.
+        growth: Factor by which the population grows at a restart.
 
     Raises:
         MissingExtra: The package `cma` is not installed.

@@ -89,7 +89,7 @@ def wheel(costs: Array) -> Array:
     weights = np.zeros(len(costs))
     if finite.any():
         weights[finite] = costs[finite].max() - costs[finite]
-    if not weights.any():  # nobody is better than anybody
+    if not weights.any():  # all are equally good
         weights[:] = 1
     probabilities: Array = weights / weights.sum()
     return probabilities

@@ -22,7 +22,7 @@ from pin_metaik.watching import Progress, Watch, ended, tell
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """What a search found and why it ended.
+    """The best of a search, and why it ended.
 
     Attributes:
         x: The best point evaluated (n,), inside the box.

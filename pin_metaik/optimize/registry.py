@@ -29,7 +29,7 @@ ALGORITHMS: dict[str, type[Metaheuristic]] = {
 
 
 def make(algorithm: str | Metaheuristic) -> Metaheuristic:
-    """An algorithm from its name, with its default settings; an object that already is one is returned as it is.
+    """An algorithm from its name, with its default settings; an object is returned unchanged.
 
     Raises:
         UnknownName: No metaheuristic of that name; the message lists those there are.

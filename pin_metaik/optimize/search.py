@@ -1,4 +1,4 @@
-"""What a metaheuristic is, and all it may see of the search it runs in."""
+"""The protocol of a metaheuristic, and the search as it sees it."""
 
 from __future__ import annotations
 

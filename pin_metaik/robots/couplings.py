@@ -23,7 +23,7 @@ from pin_metaik.errors import InvalidModel
 from pin_metaik.robots.wording import NO_LIMIT
 
 SINGLE = ("revolute", "continuous", "prismatic")  # joints with one degree of freedom
-NO_ROOM = 1e-9  # rad or m; a range that is no wider is none
+NO_ROOM = 1e-9  # rad or m; a joint with no wider range cannot move
 RANK = "06d"
 PINOCCHIOS = ("universe", "root_joint")  # names that Pinocchio gives
 
@@ -40,13 +40,13 @@ class Coupling:
 
 @dataclass(frozen=True)
 class Couplings:
-    """What the mimic tags of a URDF come to.
+    """The couplings that the mimic tags of a URDF describe.
 
     Attributes:
         kinds: Type of each joint, by name.
         followers: Couplings of followers to joints that follow none.
         constants: Position of each follower of something that does not move, by name.
-        broken: What is wrong with each tag that means nothing, by the name of its joint, which stays free.
+        broken: The fault of each tag that means nothing, by the name of its joint, which stays free.
     """
 
     kinds: Mapping[str, str]

@@ -1,4 +1,4 @@
-"""What a model is made from, and Pinocchio's models of it: what goes wrong in reading is told by our errors."""
+"""The source of a model, and Pinocchio's models of it; errors in reading are raised as ours."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _NOT_READ = ("equality", "include")  # of MJCF
 @checked_as(InvalidModel)
 @dataclass(frozen=True)
 class Description:
-    """What a model is made from: plain values, so that a process that gets them makes the same model again.
+    """The source of a model as plain values, from which another process makes the same model.
 
     Attributes:
         text: The URDF, or the MJCF.
@@ -52,7 +52,7 @@ class Description:
     mimic: bool = True
 
     def __post_init__(self) -> None:
-        """Raises InvalidSetting for a base that is none."""
+        """Raises InvalidSetting for an unknown base."""
         one_of("base", self.base, Base)
 
     @property
@@ -66,7 +66,7 @@ class Description:
         return outermost(self.text) == "mujoco"
 
     def model(self) -> pin.Model:
-        """The model, built anew, and remembered with what it was made from (``description_of``).
+        """The model, built anew, and remembered with its source (``description_of``).
 
         Raises:
             InvalidModel: If the text is not a robot; the message has the parser's own reason.
@@ -201,12 +201,12 @@ _MADE_FROM: WeakKeyDictionary[pin.Model, Description] = WeakKeyDictionary()
 
 @checked
 def description_of(model: pin.Model) -> Description | None:
-    """What a model was made from, or None if it is not one of ``Description.model``."""
+    """The source of a model, or None if it is not one of ``Description.model``."""
     return _MADE_FROM.get(model)
 
 
 def _refuse_xacro(tree: ET.Element, what: str) -> None:
-    """Xacro is a language of macros: what it stands for is in no element that a URDF parser reads."""
+    """Xacro is a language of macros, which a URDF parser does not expand."""
     for element in tree.iter():
         signs = [f"<{element.tag}>"] if element.tag.startswith("xacro:") else []
         if not signs and element.tag in _CARRY_NUMBERS:

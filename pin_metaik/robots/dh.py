@@ -104,7 +104,7 @@ class DHTable:
         rows: One row per joint, from the base.
         base: Frame 0 in the world.
         tool: Tool frame in the frame of the last row.
-        description: What it is and what was assumed.
+        description: The robot, and the assumptions of the table.
         source: Where its numbers were published.
 
     Raises:

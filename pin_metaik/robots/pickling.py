@@ -35,7 +35,7 @@ class Follower(NamedTuple):
         settings: What that class takes: an axis, a pitch.
         leader: Id and ``idx_vExtended`` of the joint it follows.
         scaling: Of the leader's coordinate ...
-        offset: ... and what is added.
+        offset: ... and the offset.
     """
 
     joint: int
@@ -113,7 +113,7 @@ def _joint(model: pin.Model, follower: Follower) -> pin.JointModel:
 
 
 def _same(model: pin.Model, remake: Callable[[], pin.Model]) -> bool:
-    """Whether what is made anew is the model, to the last bit of what moves."""
+    """Whether the model made anew equals the model, to the last bit of its joints."""
     try:
         made = remake()
     except (TypeError, ValueError, AttributeError):  # Pinocchio's Python has no such joint, or no way to make one

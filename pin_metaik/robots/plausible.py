@@ -1,4 +1,4 @@
-"""Numbers that are probably in another unit, degrees or millimetres: they are taken as they are, and said."""
+"""Numbers that are probably in another unit, degrees or millimetres: they are taken unchanged, with a remark."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pinocchio as pin
 from pin_metaik.robots.dh import DHTable
 
 TURN = 2.0 * pi
-MANY_TURNS = 10 * TURN  # a multiple of a quarter turn up to here is a limit that somebody meant
+MANY_TURNS = 10 * TURN  # a multiple of a quarter turn up to here is a deliberate limit
 PRACTICALLY_NONE = (10.0, 1000.0)  # rad; how people write that there is no limit: this one, or from the other on
 FAR = 100.0  # m; no arm gets that far
 ENDLESS = 1e5  # m; a slide as long as this is a moving base

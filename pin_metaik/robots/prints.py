@@ -14,7 +14,7 @@ _STDERR = threading.Lock()
 
 @contextmanager
 def caught_prints() -> Iterator[Callable[[], str]]:
-    """Catch what is printed meanwhile; the value is a function that gives it as one line."""
+    """Catch prints meanwhile; the value is a function that gives them as one line."""
 
     def text() -> str:
         caught.seek(0)

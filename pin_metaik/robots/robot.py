@@ -1,4 +1,4 @@
-"""A robot to solve for, by name or by file: its Pinocchio model now, its geometry when somebody asks."""
+"""A robot to solve for, by name or by file: its Pinocchio model now, its geometry when it is asked for."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Robot:
         name: Name it was asked for by, or the one its file gives.
         model: Its ``pin.Model``.
         frame: Default tip frame: one that at least one joint moves, under a name no other link has.
-        description: What the model is made from: plain values that pickle, where a model with mimic joints does not.
+        description: The source of the model: plain values that pickle, where a model with mimic joints does not.
         srdf: File with reference configurations and disabled collisions, or None.
         remarks: What was guessed, mended or could not be held in reading it; ``load_robot`` warns of each.
     """

@@ -1,4 +1,4 @@
-"""Elements and attributes of a URDF that nobody reads because they are spelt wrong: what they say would be lost."""
+"""Misspelt elements and attributes of a URDF, which the parser would ignore."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ ALIKE = 0.75  # by difflib, 1 for equal
 
 
 def misspelt(robot: ET.Element) -> list[str]:
-    """What nobody reads in links and joints of a URDF, one remark for each, with what was probably meant."""
+    """Ignored elements and attributes in links and joints of a URDF: a remark for each, with the likely spelling."""
     remarks = [*_parts(robot, "the robot")]
     remarks += [f"<{e.tag}> {e.get('name', '')!r}: loops are not held" for e in robot if e.tag in _LOOPS]
     for element in robot:

@@ -1,4 +1,4 @@
-"""What a robot's file says: bytes to text in whatever encoding, text to a tree as forgivingly as the URDF parser.
+"""Reading a robot's file: bytes of any encoding to text, text to a tree as forgivingly as the URDF parser.
 
 TinyXML2, which reads URDF for Pinocchio, takes what strict XML forbids and people's files have: prefixes nobody
 declared, blank lines and text before the declaration, ``--`` inside comments, a bare ``&`` or ``<`` in a value, control

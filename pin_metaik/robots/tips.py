@@ -1,4 +1,4 @@
-"""The tip one means when none is named: what the names of links say, and how the links hang together."""
+"""The default tip of a robot, found by the names of its links and the tree of its joints."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections import Counter
 import pinocchio as pin
 
 _LINKS = (pin.FrameType.BODY, pin.FrameType.OP_FRAME)
-# What a frame to reach with is called, the clearest word first.
+# Names of frames to reach with, the clearest word first.
 _SAYS = [
     re.compile(pattern)
     for pattern in (
@@ -23,7 +23,7 @@ _SAYS = [
     )
 ]
 _CLEAR = 5  # of these words the first that a gripper's joint does not contradict
-# What is never meant: parts of a gripper, of a sensor, of a drive, or shapes of another link.
+# Never the tip: parts of a gripper, of a sensor, of a drive, or shapes of another link.
 _NEVER = re.compile(
     r"\b(finger|thumb|knuckle|jaw|claw|camera|optical|aruco|marker|propeller|sensor|laser|lidar|wheel|caster|collision|"
     r"visual|kinect|realsense|acceler|fixture|toolbox)|\b(index|middle|ring|pinky|little|pads?|cam|lens|prop|rotor|imu|"

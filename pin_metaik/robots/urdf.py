@@ -1,4 +1,4 @@
-"""DH table -> URDF text, whose forward kinematics is the DH product.
+"""DH table -> URDF text with the forward kinematics of the DH product.
 
 Between two joint axes a table of either convention has one fixed step Rz(theta) Tz(d) Tx(a) Rx(alpha), in which theta
 and d are constants of the row before, a and alpha of the same row (standard) or of the next (modified). What a joint

@@ -18,7 +18,7 @@ from pin_metaik.errors import InvalidModel
 
 Shapes = Literal["collision", "visual"]
 
-VERSION = "1.1"  # the newest in which limits may be crossed, which matters only to who moves the joint
+VERSION = "1.1"  # the newest in which limits may be crossed, which matters only to a controller of the joint
 NEWEST = "1.2"  # of URDF
 NO_LIMIT = "1e308"  # Pinocchio's "no limit"
 _MOTION = ("parent", "child", "origin", "axis", "limit", "dynamics", "mimic")  # what of a joint a model is made from
@@ -31,7 +31,7 @@ def motion_of(robot: ET.Element, what: str) -> tuple[ET.Element, list[str]]:
     """A tree of the links, masses and joints of a URDF's tree, and what has to be said about it.
 
     Raises:
-        InvalidModel: If its version is one that nobody reads.
+        InvalidModel: If no parser reads its version.
     """
     version = robot.get("version", "1.0").strip()
     if not re.fullmatch(r"1(\.[0-2])?", version):
@@ -121,7 +121,7 @@ def negative_sizes(robot: ET.Element, shapes: Shapes) -> list[str]:
 
 
 def _number(text: str) -> float:
-    """The number a text is; NaN, if it is none: the parser will name it."""
+    """The number of a text; NaN for any other text, which the parser will name."""
     try:
         return float(text)
     except ValueError:

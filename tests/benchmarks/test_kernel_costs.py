@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from pin_metaik.compare.cost import FK_WITH_JACOBIAN
+from pin_metaik.compare.methods.cost import FK_WITH_JACOBIAN
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 

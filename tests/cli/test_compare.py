@@ -6,11 +6,11 @@ import pytest
 from typer.testing import CliRunner
 
 from pin_metaik.cli import app
-from pin_metaik.cli.many import split, spread
-from pin_metaik.compare.store import read_rows
+from pin_metaik.cli.options import split, spread
+from pin_metaik.compare.folder.store import read_rows
 from pin_metaik.errors import MetaIKError
 
-SMALL = ["--targets", "2", "--budget", "200"]
+SMALL = ["--tasks", "2", "--budget", "200"]
 MODULE = """
 from pin_metaik.compare import CASES, Answer, Case
 
@@ -44,7 +44,7 @@ def test_compare_report_and_replay_are_three_commands(tmp_path: Path) -> None:
     assert done.exit_code == 0 and "report.html" in done.output
     assert (tmp_path / "out" / "report" / "report.html").exists()
     done = run.invoke(app, ["replay", out, "rv7fl/random/1/gwo+dls/0"])
-    assert done.exit_code == 0 and "as its row says" in done.output and "target 1: position [" in done.output
+    assert done.exit_code == 0 and "as its row says" in done.output and "task 1: position [" in done.output
 
 
 def test_methods_and_cases_of_ones_own_are_named_by_module_and_object(

@@ -34,6 +34,7 @@ def test_every_loop_is_compiled_and_then_left_alone() -> None:
 
 def test_where_nothing_can_be_kept_nothing_is_begun(tmp_path: Path) -> None:
     shutil.copytree(sources.PACKAGE, tmp_path / "pin_metaik", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(sources.PACKAGE.parent / "pin_metaik_command.py", tmp_path)
     for folder in {path.parent for path in (tmp_path / "pin_metaik").rglob("*.py")}:
         (folder / "__pycache__").touch()  # a file where the folder would be
     nowhere = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR", "PIN_METAIK_CACHE"), os.devnull)

@@ -124,6 +124,6 @@ def test_the_example_stays_until_it_is_interrupted_and_ends_without_a_traceback(
         assert run.stdout is not None
         assert any("HTTP" in line for line in iter(run.stdout.readline, ""))
         run.send_signal(signal.SIGINT)
-        _, errors = run.communicate(timeout=60)
+        _, errors = run.communicate(timeout=300)
         assert run.returncode == 130
         assert "Traceback" not in errors

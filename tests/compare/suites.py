@@ -10,10 +10,10 @@ import numpy as np
 
 import pin_metaik as mik
 from pin_metaik.compare import CASES, Answer, Case, Suite, Task
-from pin_metaik.compare.store import read_rows
+from pin_metaik.compare.folder.store import read_rows
 
 METHODS = ("lm+restarts", "gwo", "mtde@60+dls", "default")
-SMALL = Suite(("ur5",), ("singular", "path"), METHODS, targets=3, seeds=2, budget=300)
+SMALL = Suite(("ur5",), ("singular", "path"), METHODS, tasks=3, seeds=2, budget=300)
 
 
 class Jumping:

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import pin_metaik as mik
 from pin_metaik.collision import Obstacle, Sphere
 from pin_metaik.compare import CASES, Answer, Attempt, Case, Task
-from pin_metaik.compare.case import NoTask
+from pin_metaik.compare.cases.case import NoTask
 from pin_metaik.compare.cases.jacobians import jacobians
 
 ROBOTS = ["panda", "ur5", "rv7fl", "kinova", "pr2"]
@@ -195,6 +195,6 @@ def test_a_world_without_room_is_an_error(monkeypatch: pytest.MonkeyPatch) -> No
     robot = mik.load_robot("ur5")
     walled = mik.CollisionWorld(robot, [Obstacle("all", Sphere(5.0), pin.SE3.Identity())])
     case = replace(CASES["cluttered"], draw=CASES["random"].draw, world=lambda robot: walled)
-    monkeypatch.setattr("pin_metaik.compare.case.DRAWS", 20)
+    monkeypatch.setattr("pin_metaik.compare.cases.case.DRAWS", 20)
     with pytest.raises(NoTask, match="none of 20 tasks is free"):
         case.task(case.chain(robot, np.random.default_rng(0)), walled, np.random.default_rng(0))

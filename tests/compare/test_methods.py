@@ -6,9 +6,9 @@ from numpy.testing import assert_array_equal
 
 import pin_metaik as mik
 from pin_metaik.compare import METHODS, Method, Search
-from pin_metaik.compare.cost import FK_WITH_JACOBIAN, price_of, steps_within
 from pin_metaik.compare.methods import named
-from pin_metaik.compare.methods.priced import Priced
+from pin_metaik.compare.methods.cost import FK_WITH_JACOBIAN, evaluations_of, steps_within
+from pin_metaik.compare.methods.counted import Counted
 from pin_metaik.errors import MissingExtra, UnknownName
 from pin_metaik.ik.refine import make_refiner
 from pin_metaik.optimize.gwo import GWO
@@ -60,17 +60,17 @@ def test_data_the_price_of_a_jacobian_is_the_one_that_was_measured() -> None:
 
 
 def test_no_budget_is_overdrawn_by_the_steps_it_pays_for() -> None:
-    assert [price_of(steps) for steps in (0, 1, 2, 3, 5)] == [0, 2, 3, 4, 6]
-    assert all(price_of(steps_within(budget)) <= budget for budget in range(1, 200))
+    assert [evaluations_of(steps) for steps in (0, 1, 2, 3, 5)] == [0, 2, 3, 4, 6]
+    assert all(evaluations_of(steps_within(budget)) <= budget for budget in range(1, 200))
 
 
 def test_a_refiner_gets_what_its_budget_pays_for_and_a_rest_is_written_off() -> None:
     problem, refiner = problem_of("ur5", 0), make_refiner("lm_chan")
     starts = problem.box.sample(np.random.default_rng(0), 1)
-    plain, priced = refiner.refine(problem, starts, 10), Priced(refiner).refine(problem, starts, 12)
+    plain, priced = refiner.refine(problem, starts, 10), Counted(refiner).refine(problem, starts, 12)
     assert_array_equal(priced.x, plain.x)
-    assert priced.evaluations == price_of(plain.evaluations)
-    broke = Priced(refiner).refine(problem, starts, 1)
+    assert priced.evaluations == evaluations_of(plain.evaluations)
+    broke = Counted(refiner).refine(problem, starts, 1)
     assert (broke.met, broke.evaluations) == (False, 1)
 
 

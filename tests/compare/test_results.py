@@ -7,39 +7,39 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from pin_metaik.compare import Suite, Trial
-from pin_metaik.compare.record import Record
+from pin_metaik.compare.folder.manifest import Manifest
 from pin_metaik.compare.report.by_case import by_case, convergence
 from pin_metaik.compare.report.comparison import sections
 from pin_metaik.compare.report.overview import overview, reading, winners
 from pin_metaik.compare.report.parts import Section
 from pin_metaik.compare.report.seeds import seeds_against_restarts
 from pin_metaik.compare.report.worst import trouble, worst
-from pin_metaik.compare.results import Results, cost, summarise
-from pin_metaik.compare.trial import CURVE
+from pin_metaik.compare.results.results import Results, cost, summarise
+from pin_metaik.compare.trials.trial import CURVE
 
 METHODS = ("dls+restarts", "gwo+dls", "mtde+dls")
-RECORD = Record.of(Suite(("ur5",), ("random", "path"), METHODS, targets=40, budget=1000))
+MANIFEST = Manifest.from_suite(Suite(("ur5",), ("random", "path"), METHODS, tasks=40, budget=1000))
 
 
-def row(method: str, target: int, evaluations: int | None, case: str = "random", seed: int = 0) -> Trial:
+def row(method: str, task: int, evaluations: int | None, case: str = "random", seed: int = 0) -> Trial:
     """A trial that solved its task with so many evaluations, or did not."""
     solved = evaluations is not None
     return Trial(
-        "ur5", case, method, target, seed, 1000, solved, solved, solved, "SOLVED" if solved else "OUT_OF_TOLERANCE",
-        evaluations=1000 if evaluations is None else evaluations, seconds=0.002 + 0.001 * target,
+        "ur5", case, method, task, seed, 1000, solved, solved, solved, "SOLVED" if solved else "OUT_OF_TOLERANCE",
+        evaluations=1000 if evaluations is None else evaluations, seconds=0.002 + 0.001 * task,
     )  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def results() -> Results:
-    """Restarts take ten times the evaluations of gwo, mtde ten times those of restarts; target 7 it misses."""
+    """Restarts take ten times the evaluations of gwo, mtde ten times those of restarts; task 7 it misses."""
     trials = []
-    for target in range(40):
-        base = 10 + target
-        trials += [row("dls+restarts", target, 10 * base), row("gwo+dls", target, base)]
-        trials += [row("mtde+dls", target, None if target == 7 else 100 * base)]
-    record = Record.of(Suite(("ur5",), ("random",), METHODS, targets=40, budget=10_000))
-    return Results(record, [replace(trial, allowed=10_000) for trial in trials])
+    for task in range(40):
+        base = 10 + task
+        trials += [row("dls+restarts", task, 10 * base), row("gwo+dls", task, base)]
+        trials += [row("mtde+dls", task, None if task == 7 else 100 * base)]
+    manifest = Manifest.from_suite(Suite(("ur5",), ("random",), METHODS, tasks=40, budget=10_000))
+    return Results(manifest, [replace(trial, budget=10_000) for trial in trials])
 
 
 def table(section: Section | None, name: str) -> dict[str, list[object]]:
@@ -65,23 +65,23 @@ def test_an_unsolved_task_costs_ten_budgets_and_a_free_answer_one_evaluation() -
 
 def test_all_who_rightly_say_no_rank_alike_and_that_says_nothing_of_seeds(results: Results) -> None:
     told = [replace(t, met=False, claimed=False, status="UNREACHABLE") for t in results.trials if t.solved]
-    said = Results(results.record, told)
+    said = Results(results.manifest, told)
     assert_array_equal(said.costs("random"), 1.0)
     assert said.hopeless("random") and not results.hopeless("random")
     assert seeds_against_restarts(said) is None
 
 
 def test_seeds_are_taken_together_by_the_geometric_mean_and_unfinished_tasks_are_left_out() -> None:
-    suite = Suite(("ur5",), ("random",), ("lm", "dls"), targets=3, seeds=2)
+    suite = Suite(("ur5",), ("random",), ("lm", "dls"), tasks=3, seeds=2)
     trials = [row(m, 0, e, seed=s) for m, pair in (("lm", (10, 1000)), ("dls", (20, 20))) for s, e in enumerate(pair)]
     trials += [row("lm", 1, 10), row("dls", 1, 10), row("dls", 1, 10, seed=1), row("dls", 2, 5)]
-    assert_allclose(Results(Record.of(suite), trials).costs("random"), [[100.0, 20.0]])
+    assert_allclose(Results(Manifest.from_suite(suite), trials).costs("random"), [[100.0, 20.0]])
 
 
-def test_methods_that_do_not_tell_what_they_spend_are_not_ranked(results: Results) -> None:
+def test_methods_that_do_not_report_evaluations_are_not_ranked(results: Results) -> None:
     silent = [replace(t, evaluations=None) if t.method == "mtde+dls" else t for t in results.trials]
-    quiet = Results(results.record, silent)
-    assert quiet.counted == ["dls+restarts", "gwo+dls"]
+    quiet = Results(results.manifest, silent)
+    assert quiet.rankable == ["dls+restarts", "gwo+dls"]
     assert "do not report evaluations: mtde+dls" in " ".join(reading(quiet).text)
     assert table(overview(quiet), "overview")["mean rank"][-1] is None
 
@@ -109,7 +109,9 @@ def test_seeds_win_where_they_take_fewer_evaluations_and_lose_where_they_take_mo
 
 def test_without_a_control_there_is_no_verdict_on_seeds() -> None:
     assert (
-        seeds_against_restarts(Results(Record.of(Suite(("ur5",), ("random",), ("gwo+dls",))), [row("gwo+dls", 0, 5)]))
+        seeds_against_restarts(
+            Results(Manifest.from_suite(Suite(("ur5",), ("random",), ("gwo+dls",))), [row("gwo+dls", 0, 5)])
+        )
         is None
     )
 
@@ -120,9 +122,9 @@ def test_winner_and_loser_are_named(results: Results) -> None:
     assert columns["not significantly different"] == ["nobody"]
 
 
-def test_the_hardest_target_comes_first_with_the_command_to_see_it(results: Results) -> None:
+def test_the_hardest_task_comes_first_with_the_command_to_see_it(results: Results) -> None:
     columns = table(worst(results, "out/x"), "worst")
-    assert columns["target"][0] == 7 and columns["solved"][0] == "2 of 3"
+    assert columns["task"][0] == 7 and columns["solved"][0] == "2 of 3"
     assert columns["see it again"][0] == "`pin-metaik replay out/x ur5/random/7/mtde+dls/0`"
 
 
@@ -132,13 +134,13 @@ def test_errors_false_claims_and_overspending_are_told(results: Results) -> None
     bad.append(replace(row("mtde+dls", 3, None), error="ValueError: no"))
     bad.append(replace(row("mtde+dls", 0, None), status="UNREACHABLE"))  # which gwo+dls met
     bad.append(replace(row("mtde+dls", 4, None), status="UNREACHABLE"))  # which nobody met
-    columns = table(trouble(Results(RECORD, bad)), "trouble")
+    columns = table(trouble(Results(MANIFEST, bad)), "trouble")
     assert columns["method"] == ["mtde+dls", "gwo+dls", "mtde+dls", "gwo+dls"]
     assert [str(what).partition(" trials ")[::2] for what in columns["what"]] == [
         ("1", "raised ValueError: no"),
         ("1", "claimed a solution that Pinocchio (or coal) does not confirm"),
         ("1", "said UNREACHABLE of a target that was met"),
-        ("1", "spent more than was allowed"),
+        ("1", "spent more than their budget"),
     ]
 
 
@@ -150,12 +152,12 @@ def test_pairs_of_a_case_are_all_there(results: Results) -> None:
 def test_convergence_takes_the_median_where_all_trials_have_a_cost() -> None:
     suite = Suite(("ur5",), ("random",), ("gwo",))
     flat = [replace(row("gwo", i, None), curve=(None, *[float(i)] * (len(CURVE) - 1))) for i in range(5)]
-    assert convergence(Results(Record.of(suite), flat)) is not None
-    assert convergence(Results(Record.of(suite), [row("gwo", 0, None)])) is None
+    assert convergence(Results(Manifest.from_suite(suite), flat)) is not None
+    assert convergence(Results(Manifest.from_suite(suite), [row("gwo", 0, None)])) is None
 
 
 def test_an_unfinished_comparison_is_called_partial_and_reported_on(results: Results) -> None:
-    part = Results(RECORD, results.trials[:30])
+    part = Results(MANIFEST, results.trials[:30])
     found = sections(part, "out", [])
     assert any("PARTIAL: 30 of 240 trials" in text for section in found for text in section.text)
 

@@ -19,13 +19,13 @@ from pyarrow import parquet
 import pin_metaik as mik
 from pin_metaik.compare import METHODS as KNOWN
 from pin_metaik.compare import Answer, Suite, compare, read_results, replay, write_report
-from pin_metaik.compare.case import NoTask
-from pin_metaik.compare.environment import read_environment
-from pin_metaik.compare.record import Record
+from pin_metaik.compare.cases.case import NoTask
+from pin_metaik.compare.folder.environment import read_environment
+from pin_metaik.compare.folder.manifest import Manifest
+from pin_metaik.compare.folder.store import ROWS, read_manifest, read_rows
 from pin_metaik.compare.report.by_case import by_case
 from pin_metaik.compare.report.overview import reading
-from pin_metaik.compare.store import ROWS, read_record, read_rows
-from pin_metaik.compare.trial import generator
+from pin_metaik.compare.trials.trial import generator
 from pin_metaik.errors import CannotWrite, InvalidSetting, MetaIKError, MissingExtra, UnknownName
 from tests.compare.suites import IMPOSSIBLE, JUMPING, METHODS, SMALL, Interrupted, rows
 
@@ -33,8 +33,21 @@ ROOT = Path(__file__).parents[2]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
 COMMAND = [
     sys.executable, "-m", "pin_metaik", "compare", "--robot", "ur5", "--cases", "singular", "path",
-    "--methods", ",".join(METHODS), "--targets", "3", "--seeds", "2", "--budget", "300",
+    "--methods", ",".join(METHODS), "--tasks", "3", "--seeds", "2", "--budget", "300",
 ]  # fmt: skip
+# The same, but that it and all its processes are killed as soon as the first rows are written.
+KILLED = """
+import os, signal
+from pin_metaik.compare.folder.store import Appender
+
+def add(self, trials, add=Appender.add):
+    add(self, trials)
+    os.killpg(0, signal.SIGKILL)
+
+Appender.add = add
+from pin_metaik_command import run
+run()
+"""
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +65,7 @@ def test_rows_do_not_depend_on_the_number_of_processes(whole: Path, tmp_path: Pa
 
 
 def test_rows_do_not_depend_on_what_else_is_compared(whole: Path, tmp_path: Path) -> None:
-    compare(Suite(("ur5",), ("path",), ("default", "gwo"), targets=2, seeds=1, budget=300), tmp_path)
+    compare(Suite(("ur5",), ("path",), ("default", "gwo"), tasks=2, seeds=1, budget=300), tmp_path)
     there = rows(whole)
     assert rows(tmp_path).items() <= there.items()
 
@@ -84,7 +97,7 @@ def test_what_was_cut_off_is_done_again_and_nothing_else(whole: Path, tmp_path: 
 
 
 def test_a_comparison_may_grow_but_not_change(whole: Path, tmp_path: Path) -> None:
-    compare(Suite(("ur5",), ("path",), ("gwo",), targets=1, seeds=1, budget=300), tmp_path)
+    compare(Suite(("ur5",), ("path",), ("gwo",), tasks=1, seeds=1, budget=300), tmp_path)
     outcome = compare(SMALL, tmp_path)
     assert outcome.fresh == 47
     assert rows(tmp_path) == rows(whole)
@@ -92,7 +105,7 @@ def test_a_comparison_may_grow_but_not_change(whole: Path, tmp_path: Path) -> No
         (Suite(("ur5",), ("singular", "path"), METHODS, 3, 2, 400), "--budget 300, not 400"),
         (Suite(("ur5",), ("singular", "path"), METHODS, 3, 2, 300, 1), "--rng 0, not 1"),
         (Suite(("ur5",), ("singular",), METHODS, 3, 2, 300), "cases path"),
-        (Suite(("ur5",), ("singular", "path"), METHODS, 2, 2, 300), "3 targets"),
+        (Suite(("ur5",), ("singular", "path"), METHODS, 2, 2, 300), "3 tasks"),
     ):
         with pytest.raises(InvalidSetting, match=complaint):
             compare(changed, tmp_path)
@@ -105,7 +118,7 @@ def test_a_line_that_is_no_row_is_named(tmp_path: Path) -> None:
 
 
 def test_what_a_method_raises_is_a_row_and_not_the_end(tmp_path: Path) -> None:
-    outcome = compare(Suite(("ur5",), ("random",), (JUMPING, "dls"), targets=8, budget=100), tmp_path)
+    outcome = compare(Suite(("ur5",), ("random",), (JUMPING, "dls"), tasks=8, budget=100), tmp_path)
     assert outcome.done == 16
     raised = [trial for trial in read_rows(tmp_path) if trial.error is not None]
     assert 0 < len(raised) == outcome.errors < 8
@@ -116,24 +129,24 @@ def test_what_a_method_raises_is_a_row_and_not_the_end(tmp_path: Path) -> None:
 
 
 def test_a_case_that_raises_is_a_row_for_each_method(tmp_path: Path) -> None:
-    assert compare(Suite(("ur5",), (IMPOSSIBLE,), ("dls", "lm"), targets=2), tmp_path).errors == 4
+    assert compare(Suite(("ur5",), (IMPOSSIBLE,), ("dls", "lm"), tasks=2), tmp_path).errors == 4
 
 
-def test_who_spends_more_than_allowed_has_not_solved_it(tmp_path: Path) -> None:
-    compare(Suite(("ur5",), ("random",), ("tests.compare.suites:SPENDTHRIFT",), targets=3), tmp_path)
+def test_a_trial_over_its_budget_has_not_solved_its_task(tmp_path: Path) -> None:
+    compare(Suite(("ur5",), ("random",), ("tests.compare.suites:SPENDTHRIFT",), tasks=3), tmp_path)
     assert all(trial.met and not trial.solved for trial in read_rows(tmp_path))
 
 
 def test_methods_that_know_nothing_of_collisions_try_again_within_their_budget(tmp_path: Path) -> None:
     methods = ("dls+restarts", "mtde@60+dls", "default")
-    compare(Suite(("ur5",), ("cluttered",), methods, targets=5, budget=2000), tmp_path)
+    compare(Suite(("ur5",), ("cluttered",), methods, tasks=5, budget=2000), tmp_path)
     trials = read_rows(tmp_path)
     assert all(trial.solved and trial.evaluations is not None and trial.evaluations <= 2000 for trial in trials)
 
 
 def test_ctrl_c_keeps_what_is_done(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt) as press:
-        compare(Suite(("ur5",), ("random",), (Interrupted(),), targets=6), tmp_path)
+        compare(Suite(("ur5",), ("random",), (Interrupted(),), tasks=6), tmp_path)
     outcome = press.value.result
     assert outcome.partial and outcome.done == len(read_rows(tmp_path)) == 2
     assert "interrupted: the same command goes on" in str(outcome)
@@ -146,8 +159,8 @@ def test_the_parquet_file_has_the_same_rows(whole: Path) -> None:
 
 
 def test_a_suite_and_its_environment_are_written_down(whole: Path) -> None:
-    record = read_record(whole)
-    assert record == Record.of(SMALL) and record.suite(whole) == SMALL
+    record = read_manifest(whole)
+    assert record == Manifest.from_suite(SMALL) and record.suite(whole) == SMALL
     (session,) = read_environment(whole)
     assert {"pin-metaik", "pin", "numpy", "numba", "scipy", "joblib"} <= session["packages"].keys()
     assert session["processor"] and session["cores"] >= 1 and session["date"].startswith("20")
@@ -161,7 +174,7 @@ def test_a_trial_can_be_run_again_by_its_name(whole: Path) -> None:
     assert "as its row says" in "\n".join(again.lines())
     with pytest.raises(UnknownName, match="no method named 'gwo2'"):
         replay(whole, "ur5/singular/0/gwo2/0")
-    with pytest.raises(InvalidSetting, match="ROBOT/CASE/TARGET/METHOD/SEED"):
+    with pytest.raises(InvalidSetting, match="ROBOT/CASE/TASK/METHOD/SEED"):
         replay(whole, "ur5/singular")
 
 
@@ -177,7 +190,7 @@ def test_a_trial_can_be_run_again_by_its_name(whole: Path) -> None:
         (lambda: Suite(("ur5",), ("path",), ("tests.compare.suites:MINE",)), InvalidSetting),
         (lambda: Suite(("ur5",), ("path",), ("gwo", "gwo")), InvalidSetting),
         (lambda: Suite((), ("path",), ("gwo",)), InvalidSetting),
-        (lambda: Suite(("ur5",), ("path",), ("gwo",), targets=0), InvalidSetting),
+        (lambda: Suite(("ur5",), ("path",), ("gwo",), tasks=0), InvalidSetting),
     ],
 )
 def test_what_makes_no_sense_is_said_before_anything_runs(call: object, error: type[MetaIKError]) -> None:
@@ -194,15 +207,10 @@ def test_peers_that_are_missing_are_told_before_anything_runs(monkeypatch: pytes
 
 @pytest.mark.slow
 def test_killed_half_way_and_started_again_the_rows_are_those_of_one_stretch(whole: Path, tmp_path: Path) -> None:
-    out, file = ["--jobs", "2", "--out", str(tmp_path)], tmp_path / ROWS
-    running = subprocess.Popen([*COMMAND, *out], env=ENVIRONMENT, start_new_session=True, stderr=subprocess.DEVNULL)
-    try:
-        until = time.monotonic() + 120.0
-        while not (file.exists() and file.stat().st_size) and time.monotonic() < until:
-            time.sleep(0.001)
-    finally:
-        os.killpg(running.pid, signal.SIGKILL)
-        running.wait()
+    out = ["--jobs", "2", "--out", str(tmp_path)]
+    killed = [COMMAND[0], "-c", KILLED, *COMMAND[3:], *out]
+    with subprocess.Popen(killed, env=ENVIRONMENT, start_new_session=True, stderr=subprocess.DEVNULL) as running:
+        assert running.wait(timeout=300) == -signal.SIGKILL
     there = rows(tmp_path)
     assert 0 < len(there) < 48
     done = subprocess.run([*COMMAND, *out], env=ENVIRONMENT, capture_output=True, text=True, timeout=300)
@@ -252,7 +260,7 @@ def test_a_dask_cluster_gives_the_same_rows(whole: Path, tmp_path: Path, schedul
 
 def test_a_cluster_that_does_not_answer_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr("pin_metaik.compare.workers.CONNECTING", 0.5)
+    monkeypatch.setattr("pin_metaik.compare.trials.workers.CONNECTING", 0.5)
     for scheduler, complaint in ((None, "--scheduler ADDRESS"), ("tcp://127.0.0.1:9", "no Dask scheduler answers")):
         with pytest.raises(InvalidSetting, match=complaint):
             compare(SMALL, tmp_path / "out", backend="dask", scheduler=scheduler)
@@ -263,7 +271,7 @@ SMALL_ARM = ("a1", "double_pendulum", "finger_edu")
 
 @pytest.mark.parametrize("robot", SMALL_ARM)
 def test_a_case_that_an_arm_has_none_of_is_said_once_and_the_others_go_on(robot: str, tmp_path: Path) -> None:
-    outcome = compare(Suite((robot, "ur5"), ("singular", "random"), ("lm",), targets=2, budget=100), tmp_path)
+    outcome = compare(Suite((robot, "ur5"), ("singular", "random"), ("lm",), tasks=2, budget=100), tmp_path)
     assert not outcome.partial
     absent = {line.partition(":")[0] for line in outcome.absent}
     assert absent <= {f"{robot}/singular"}
@@ -278,13 +286,13 @@ def test_a_case_that_an_arm_has_none_of_is_said_once_and_the_others_go_on(robot:
 
 def test_where_no_arm_has_any_of_the_cases_that_is_said_before_the_work(tmp_path: Path) -> None:
     with pytest.raises(NoTask, match="a1/singular: no configuration of these 3 joints loses a direction"):
-        compare(Suite(("a1",), ("singular",), ("lm",), targets=2), tmp_path / "out")
+        compare(Suite(("a1",), ("singular",), ("lm",), tasks=2), tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 
 def test_a_second_process_is_refused_and_a_killed_one_leaves_no_lock(tmp_path: Path) -> None:
-    holder = "import sys, time; from pathlib import Path; from pin_metaik.compare.lock import locked\n"
-    holder += f"with locked(Path({str(tmp_path)!r}), 'comparison'): print('held', flush=True); time.sleep(60)"
+    holder = "import sys, time; from pathlib import Path; from pin_metaik.compare.folder.lock import locked\n"
+    holder += f"with locked(Path({str(tmp_path)!r}), 'comparison'): print('held', flush=True); time.sleep(3600)"
     with subprocess.Popen([sys.executable, "-c", holder], env=ENVIRONMENT, stdout=subprocess.PIPE) as running:
         try:
             assert running.stdout is not None and running.stdout.readline() == b"held\n"
@@ -292,7 +300,7 @@ def test_a_second_process_is_refused_and_a_killed_one_leaves_no_lock(tmp_path: P
                 compare(SMALL, tmp_path)
         finally:
             running.kill()
-    outcome = compare(Suite(("ur5",), ("random",), ("lm",), targets=1, budget=50), tmp_path)
+    outcome = compare(Suite(("ur5",), ("random",), ("lm",), tasks=1, budget=50), tmp_path)
     assert outcome.done == 1
     assert not list(tmp_path.glob(".*.lock"))
 
@@ -305,7 +313,7 @@ def test_a_comparison_of_ones_own_robot_is_run_again_in_another_folder(
     (here / "mine.urdf").write_text(mik.load_robot("rv7fl").urdf)
     (here / "mine.toml").write_bytes(mik.load_robot("cobra600").source.read_bytes())
     monkeypatch.chdir(here)
-    compare(Suite(("mine.urdf", "mine.toml", "ur5"), ("random",), ("lm",), targets=1, budget=50), Path("out"))
+    compare(Suite(("mine.urdf", "mine.toml", "ur5"), ("random",), ("lm",), tasks=1, budget=50), Path("out"))
     trials = [trial.name for trial in read_rows(here / "out")]
     (here / "out").rename(there)
     (here / "mine.urdf").unlink()
@@ -325,7 +333,7 @@ def test_meshes_travel_where_a_case_has_a_world(tmp_path: Path) -> None:
         (package / tail).write_bytes(mesh.read_bytes())
     own = tmp_path / "here" / "mine.urdf"
     own.write_text(robot.urdf)
-    compare(Suite((str(own),), ("cluttered",), ("default",), targets=1, budget=500), tmp_path / "out")
+    compare(Suite((str(own),), ("cluttered",), ("default",), tasks=1, budget=500), tmp_path / "out")
     (trial,) = read_rows(tmp_path / "out")
     assert trial.error is None
     (tmp_path / "here").rename(tmp_path / "gone")
@@ -334,7 +342,7 @@ def test_meshes_travel_where_a_case_has_a_world(tmp_path: Path) -> None:
 
 def test_rows_of_another_robot_of_the_same_name_are_not_mixed(tmp_path: Path) -> None:
     own, urdf = tmp_path / "mine.urdf", mik.load_robot("rv7fl").urdf
-    suite = Suite(("ur5",), ("random",), ("lm",), targets=1, budget=50)
+    suite = Suite(("ur5",), ("random",), ("lm",), tasks=1, budget=50)
     own.write_text(urdf)
     compare(replace(suite, robots=(str(own),)), tmp_path / "out")
     own.write_text(urdf.replace("<robot", "<!-- measured anew --><robot", 1))
@@ -343,9 +351,9 @@ def test_rows_of_another_robot_of_the_same_name_are_not_mixed(tmp_path: Path) ->
 
 
 def test_folders_from_before_robots_travelled_are_read(whole: Path, tmp_path: Path) -> None:
-    values = read_record(whole).to_json()
+    values = read_manifest(whole).to_json()
     del values["files"], values["absent"]
-    assert Record.from_json(values) == read_record(whole)
+    assert Manifest.from_json(values) == read_manifest(whole)
 
 
 @pytest.mark.parametrize(
@@ -355,7 +363,7 @@ def test_folders_from_before_robots_travelled_are_read(whole: Path, tmp_path: Pa
         ("suite.json", lambda text: text.replace('"about"', '"around"'), "unknown key 'around'"),
         ("suite.json", lambda text: text.replace('"rng"', '"absent"'), "the key 'absent' is there twice"),
         ("suite.json", lambda text: json.dumps({"robots": json.loads(text)["robots"]}), "is missing"),
-        ("suite.json", lambda text: text.replace('"targets": 3', '"targets": "3"'), "targets: expected a whole number"),
+        ("suite.json", lambda text: text.replace('"tasks": 3', '"tasks": "3"'), "tasks: expected a whole number"),
         ("suite.json", lambda text: text[:-9], "is not JSON"),
         ("suite.json", lambda text: "[]", "is not an object"),
         ("environment.json", lambda text: text[:-9], "is not JSON"),
@@ -382,17 +390,17 @@ def test_rows_that_cannot_be_written_are_told_before_the_work(tmp_path: Path) ->
 
 
 def test_a_trial_that_was_never_asked_for_is_named(whole: Path) -> None:
-    with pytest.raises(InvalidSetting, match="targets of this comparison are 0 to 2, got 3"):
+    with pytest.raises(InvalidSetting, match="tasks of this comparison are 0 to 2, got 3"):
         replay(whole, "ur5/path/3/gwo/0")
     with pytest.raises(InvalidSetting, match="seeds of this comparison are 0 to 1, got 2"):
         replay(whole, "ur5/path/0/gwo/2")
     lines = list(replay(whole, "ur5/path/2/gwo/0").lines())
-    assert lines[1].startswith("target 2, pose 1: position [")
+    assert lines[1].startswith("task 2, pose 1: position [")
     assert sum("rotation" in line for line in lines) == 20
 
 
 def test_the_error_that_most_rows_have_is_said(tmp_path: Path) -> None:
-    outcome = compare(Suite(("ur5",), (IMPOSSIBLE,), ("dls", "lm"), targets=2), tmp_path)
+    outcome = compare(Suite(("ur5",), (IMPOSSIBLE,), ("dls", "lm"), tasks=2), tmp_path)
     assert "4 raised an error, most often RuntimeError: no such pose" in str(outcome)
     results = read_results(tmp_path)
     assert "4 of 4 raised RuntimeError: no such pose" in " ".join(by_case(results, results.cases["impossible"]).text)
@@ -434,5 +442,5 @@ def test_ctrl_c_in_a_terminal_ends_all_processes_without_last_words(later: float
 
 def test_a_method_that_swallows_ctrl_c_ends_the_comparison_and_leaves_no_row(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
-        compare(Suite(("ur5",), ("random",), (Swallowing(),), targets=6), tmp_path)
+        compare(Suite(("ur5",), ("random",), (Swallowing(),), tasks=6), tmp_path)
     assert len(read_rows(tmp_path)) == 2

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy import stats
 
-from pin_metaik.compare.statistics import compare_all, compare_pairs, ecdf, friedman, holm, signed_rank, wilson
+from pin_metaik.compare.results.statistics import compare_all, compare_pairs, ecdf, friedman, holm, signed_rank, wilson
 
 # Hollander and Wolfe (1973), pp. 140 ff.: times of 22 players with three ways of rounding first base.
 ROUNDING_TIMES = np.array(

@@ -13,8 +13,8 @@ import numpy as np, pin_metaik as mik
 chain = mik.Chain(mik.load_robot("ur5").model, "tool0")
 pose = chain.placements(chain.q(np.full(6, 0.3)))[0]
 problem = mik.IKProblem.of(chain, pose)
-threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
 try:
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
     problem.linearize(np.full(6, 0.3))
     print("not heard")
 except KeyboardInterrupt:

@@ -132,6 +132,6 @@ def test_all_parts_are_done_once_and_after_an_error_no_more_are_taken(workers: i
 
     done.clear()
     with pytest.raises(KeyboardInterrupt):
-        run_parallel(fail, range(500), workers)
+        run_parallel(fail, range(10_000), workers)
     assert 20 in done
-    assert len(done) < 100
+    assert len(done) < 5_000  # two dozen, where nothing else runs

@@ -220,7 +220,7 @@ def test_a_chain_elsewhere_is_the_chain_made_there(name: str) -> None:
             a, b = chain.at(q0).reach(0, oriented), made.reach(0, oriented)
             assert_allclose([a.least, a.most], [b.least, b.most], atol=1e-9)
             assert_allclose(a.anchor, b.anchor, atol=1e-9)
-        at, there = chain.at(q0).atlas, made.atlas
+        at, there = chain.at(q0).sample_table, made.sample_table
         assert at.scale == pytest.approx(there.scale)
         assert_allclose(np.sort(at.x[:, 0]), np.sort(there.x[:, 0]))
 

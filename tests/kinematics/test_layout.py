@@ -12,7 +12,10 @@ ROBOTS = {"ur5": "tool0", "panda": "panda_hand", "talos": ["gripper_left_base_li
 @pytest.mark.parametrize("name", ROBOTS)
 def test_a_block_gives_back_the_chain_it_was_made_of(name: str) -> None:
     chain = mik.Chain(mik.load_robot(name).model, ROBOTS[name])
-    for block, form, samples in ((chain.block, chain.form, chain.atlas.samples), (chain.bare, chain.form[:0], None)):
+    for block, form, samples in (
+        (chain.block, chain.form, chain.sample_table.samples),
+        (chain.bare, chain.form[:0], None),
+    ):
         arm, bounds, entries, reach, packed_form = chain_in(block)
         assert sizes_in(block) == (len(arm.joints), chain.n, len(chain.frames))
         assert_array_equal(packed_form, form)

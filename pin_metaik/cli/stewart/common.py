@@ -1,4 +1,4 @@
-"""What the commands about Stewart platforms share: options, how a file is read with them, how lines are shown."""
+"""Common parts of the commands about Stewart platforms: options, reading a file with them, showing lines."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def pose_of(mechanism: Mechanism, numbers: tuple[float, ...]) -> NDArray[np.floa
 
 
 def words(mechanism: Mechanism) -> Lines:
-    """What a mechanism says of itself, and what is to be known about it."""
+    """The description of a mechanism, and remarks on its figures."""
     own = [(key, text) for key in ("description", "source") if (text := getattr(mechanism, key))]
     return own + [("note", text) for text in notes(mechanism)]
 

@@ -59,7 +59,7 @@ def design(
 ) -> None:
     """Optimise its dimensions; options replace settings of the file. Ctrl-C keeps the best so far.
 
-    Another algorithm searches with as many agents as the file's. What is written is written before anything is printed.
+    Another algorithm searches with as many agents as the file's. Files are written before anything is printed.
 
     Exit code 0: a design was found, 1: none that can be built, 2: makes no sense, 130: interrupted.
     """

@@ -30,7 +30,7 @@ def types(
     output: Annotated[Path | None, typer.Option("--output", "-o", help="A folder for the best of each: .toml.")] = None,
     as_json: Json = False,
 ) -> None:
-    """Design every type of platform for the task of a file, and compare what comes of it.
+    """Design every type of platform for the task of a file, and compare the designs.
 
     Exit code 0: each has a design, 1: some have none, 2: makes no sense, 130: interrupted, with what there was.
     """

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from pin_metaik.compare.case import Case
 from pin_metaik.compare.cases.at_limits import AT_LIMITS
 from pin_metaik.compare.cases.boundary import BOUNDARY
 from pin_metaik.compare.cases.calibrated import CALIBRATED
+from pin_metaik.compare.cases.case import Case
 from pin_metaik.compare.cases.cluttered import CLUTTERED
 from pin_metaik.compare.cases.five_dof import FIVE_DOF
 from pin_metaik.compare.cases.just_out_of_reach import JUST_OUT_OF_REACH

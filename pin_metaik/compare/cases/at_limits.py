@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pin_metaik.compare.case import Case, Task
+from pin_metaik.compare.cases.case import Case, Task
 from pin_metaik.compare.cases.near_limit import near_limit
 from pin_metaik.kinematics import Chain
 

@@ -6,7 +6,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from pin_metaik.compare.case import Case, Task
+from pin_metaik.compare.cases.case import Case, Task
 from pin_metaik.kinematics import Chain
 
 SWEEPS, GAIN = 200, 1e-13  # m gained by one sweep over the joints that are not worth another

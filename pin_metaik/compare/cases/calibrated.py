@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 
-from pin_metaik.compare.case import Case
+from pin_metaik.compare.cases.case import Case
 from pin_metaik.compare.cases.random_poses import draw
 from pin_metaik.kinematics import Chain
 from pin_metaik.robots import Robot

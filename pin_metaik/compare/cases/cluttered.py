@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pin_metaik.collision import CollisionWorld, load_scene
-from pin_metaik.compare.case import Case, NoTask, Task
+from pin_metaik.compare.cases.case import Case, NoTask, Task
 from pin_metaik.kinematics import Chain
 from pin_metaik.robots import Robot
 

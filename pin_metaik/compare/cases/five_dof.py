@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pin_metaik.compare.case import Case
+from pin_metaik.compare.cases.case import Case
 from pin_metaik.compare.cases.random_poses import draw
 from pin_metaik.kinematics import Chain
 from pin_metaik.robots import Robot

@@ -1,4 +1,4 @@
-"""Jacobians of many configurations at once, for those who look for special ones."""
+"""Jacobians of many configurations at once, for cases that search special configurations."""
 
 from __future__ import annotations
 

@@ -6,10 +6,10 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from pin_metaik.compare.case import Attempt, Case, Task
+from pin_metaik.compare.cases.case import Attempt, Case, Task
 from pin_metaik.kinematics import Chain
 
-TOLD = "The method says UNREACHABLE, and does not claim to have solved it; to give up in silence is no success."
+REPORTED = "The method says UNREACHABLE, and does not claim to have solved it; to give up in silence is no success."
 BEYOND = (0.001, 0.05)  # m past the bound on the arm's reach
 
 
@@ -32,7 +32,7 @@ def draw(chain: Chain, rng: np.random.Generator, beyond: tuple[float, float] = B
     return Task(chain, (pin.SE3(pushed_out(chain, pose[None], rng, beyond)[0]),))
 
 
-def told(task: Task, attempt: Attempt) -> bool:
+def reported_unreachable(task: Task, attempt: Attempt) -> bool:
     """Whether the method said that the target is out of reach, and claimed nothing."""
     return attempt.unreachable and not any(answer.claimed for answer in attempt.answers)
 
@@ -41,6 +41,6 @@ JUST_OUT_OF_REACH = Case(
     "just_out_of_reach",
     "Random poses pushed outward, 1 mm to 5 cm past the bound on the arm's reach that its links give.",
     draw,
-    judge=told,
-    success=TOLD,
+    judge=reported_unreachable,
+    success=REPORTED,
 )

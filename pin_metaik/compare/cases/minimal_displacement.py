@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pin_metaik.compare.case import Attempt, Case, Task
+from pin_metaik.compare.cases.case import Attempt, Case, Task
 from pin_metaik.kinematics import Chain
 
 FAR, SLACK = 0.6, 0.01  # of each joint, rad or m; and how much longer the way may be

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.compare.case import Case, Task
+from pin_metaik.compare.cases.case import Case, Task
 from pin_metaik.kinematics import Chain
 
 NEAR = 0.01  # of its range: how near a limit a joint is

@@ -6,8 +6,8 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from pin_metaik.compare.case import Case, NoTask, Task
-from pin_metaik.compare.cases.just_out_of_reach import TOLD, told
+from pin_metaik.compare.cases.case import Case, NoTask, Task
+from pin_metaik.compare.cases.just_out_of_reach import REPORTED, reported_unreachable
 from pin_metaik.ik import DLS, IKProblem
 from pin_metaik.kinematics import Chain
 
@@ -66,6 +66,6 @@ NO_SOLUTION = Case(
     "Random orientations at reachable positions that are within reach by the links' span, and still proved to have no "
     "solution; 25,000 evaluations of descents find none either.",
     draw,
-    judge=told,
-    success=TOLD,
+    judge=reported_unreachable,
+    success=REPORTED,
 )

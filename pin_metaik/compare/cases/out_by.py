@@ -6,8 +6,8 @@ from functools import partial
 
 import numpy as np
 
-from pin_metaik.compare.case import Case, Task
-from pin_metaik.compare.cases.just_out_of_reach import TOLD, draw, told
+from pin_metaik.compare.cases.case import Case, Task
+from pin_metaik.compare.cases.just_out_of_reach import REPORTED, draw, reported_unreachable
 from pin_metaik.kinematics import Chain
 
 MARGINS = {"0.1mm": 1e-4, "1mm": 1e-3, "1cm": 1e-2, "10cm": 1e-1}  # m
@@ -23,8 +23,8 @@ OUT_BY = {
         f"out_by_{name}",
         f"Random poses pushed outward, {name} past the bound on the arm's reach that its links give.",
         partial(draw_at, margin),
-        judge=told,
-        success=TOLD,
+        judge=reported_unreachable,
+        success=REPORTED,
     )
     for name, margin in MARGINS.items()
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pin_metaik.compare.case import Attempt, Case, Task
+from pin_metaik.compare.cases.case import Attempt, Case, Task
 from pin_metaik.kinematics import Chain
 
 POSES, FAR, BOUND = 20, 1.0, 0.15  # of each joint from end to end, and from one pose to the next, rad or m

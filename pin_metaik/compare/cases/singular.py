@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.compare.case import Case, NoTask, Task
+from pin_metaik.compare.cases.case import Case, NoTask, Task
 from pin_metaik.compare.cases.jacobians import jacobians
 from pin_metaik.kinematics import Chain
 
 SINGULAR = 1e-3  # smallest singular value of the frame's Jacobian (m and rad alike)
 SWEEPS, LARGEST = 30, 0.5  # steps from one start, and the longest (rad or m)
-PATIENCE = 256  # starts in a row without a singularity before there is none
+PATIENCE = 256  # consecutive starts without a singularity after which the arm counts as having none
 
 
 def singular(chain: Chain, count: int, rng: np.random.Generator, pool: int = 64) -> NDArray[np.float64]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pin_metaik.compare.method import Method
+from pin_metaik.compare.methods.method import Method
 from pin_metaik.compare.methods.peers import PEERS
 from pin_metaik.compare.methods.solvers import Default, Rounds, Search
 from pin_metaik.ik import REFINERS
@@ -26,7 +26,7 @@ def named(name: str) -> Method:
     """A method by its name; of a hybrid the evaluations of a round may be given: ``gwo@120+dls``.
 
     Raises:
-        UnknownName: There is none.
+        UnknownName: No method has that name.
     """
     seeder, at, rest = name.partition(ROUND)
     size, _, refiner = rest.partition("+")

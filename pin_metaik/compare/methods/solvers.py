@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
-from pin_metaik.compare.cost import price_of, steps_within
-from pin_metaik.compare.method import Answer
-from pin_metaik.compare.methods.priced import Priced
+from pin_metaik.compare.methods.cost import evaluations_of, steps_within
+from pin_metaik.compare.methods.counted import Counted
+from pin_metaik.compare.methods.method import Answer
 from pin_metaik.ik import IKProblem, IKResult, IKSolver, IKStatus, Refiner, solve_ik
 from pin_metaik.ik.refine import make_refiner
 from pin_metaik.ik.solver import ELITE
@@ -27,7 +27,7 @@ class Search:
     """Starts or a metaheuristic, then a refiner, as ``IKSolver`` combines them.
 
     Attributes:
-        name: What it is called.
+        name: Name in tables.
         seeder: A metaheuristic, by name or as an object; ``None``: the given start, then random ones.
         refiner: A refiner, by name or as an object; ``None``: the metaheuristic's best is the answer.
         starts: How many starts without a seeder; ``None``: until the budget is spent.
@@ -41,7 +41,7 @@ class Search:
     @cached_property
     def solver(self) -> IKSolver:
         """The solver, but for its budget."""
-        refiner = None if self.refiner is None else Priced(make_refiner(self.refiner))
+        refiner = None if self.refiner is None else Counted(make_refiner(self.refiner))
         return IKSolver(self.seeder, refiner, starts=self.starts, trace=refiner is None)
 
     @checked
@@ -56,7 +56,7 @@ class Default:
     """``solve_ik`` as everybody calls it. All of its evaluations are priced as if they came with a Jacobian.
 
     Attributes:
-        name: What it is called.
+        name: Name in tables.
         select: Which solution it shall give: see ``IKSolver``.
     """
 
@@ -70,17 +70,17 @@ class Default:
             return Answer(x0, False, 0, str(IKStatus.OUT_OF_TOLERANCE))
         solver = IKSolver(budget=Budget(evaluations=steps), select=self.select)
         found = answer(solve_ik(chain, problem.targets[0], chain.q(x0), solver=solver, world=problem.world, rng=rng))
-        return replace(found, evaluations=price_of(found.evaluations or 0))
+        return replace(found, evaluations=evaluations_of(found.evaluations or 0))
 
 
 @dataclass(frozen=True)
 class Rounds:
     """Short searches and refinements by turns: a metaheuristic spends a round, its best points are refined, and again.
 
-    ``Search`` gives a metaheuristic a quarter of what is left of the budget: much, where a refiner needs little.
+    ``Search`` gives a metaheuristic a quarter of the remaining budget: much, where a refiner needs little.
 
     Attributes:
-        name: What it is called.
+        name: Name in tables.
         seeder: A metaheuristic, by name or as an object.
         refiner: A refiner, by name or as an object.
         round: Kernel evaluations of one search.
@@ -99,7 +99,7 @@ class Rounds:
 
     def solve(self, problem: IKProblem, x0: NDArray[np.float64], budget: int, rng: np.random.Generator) -> Answer:
         """Search within the budget."""
-        refiner = Priced(make_refiner(self.refiner))
+        refiner = Counted(make_refiner(self.refiner))
         state = SearchState(problem, Budget(evaluations=budget), perf_counter(), x0)
         seeds: NDArray[np.float64] | None = x0[None]
         while not state.over() and problem.gap == 0.0:

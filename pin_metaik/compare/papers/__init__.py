@@ -1,4 +1,4 @@
-"""The papers whose experiments can be run again: one line each."""
+"""Papers with experiments that can be run again: one line each."""
 
 from __future__ import annotations
 

@@ -72,7 +72,7 @@ ROWS = {
 
 @dataclass(frozen=True)
 class Reading:
-    """One way to read what the paper leaves open.
+    """One reading of the settings that the paper does not print.
 
     Attributes:
         leapers: Which frogs leap at each of the iM steps.
@@ -118,7 +118,7 @@ def poses(chain: Chain, X: Array) -> Array:
 
 
 def differences(poses: Array) -> Array:
-    """What is left to the target (k, 6), in cm and degrees; angles the short way round."""
+    """Errors to the target (k, 6), in cm and degrees; angles in (-180, 180]."""
     e = G - poses
     e[:, 3:] -= 360 * np.rint(e[:, 3:] / 360)
     return e

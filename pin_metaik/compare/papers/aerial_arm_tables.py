@@ -107,7 +107,7 @@ def inconsistent() -> str:
 
 
 def effort() -> str:
-    """What the printed times say about the evaluations that were really spent."""
+    """Evaluations that the printed times allow."""
     leap = [1e3 * row.ms / row.leaps for row in ROWS.values()]
     frog = [1e3 * row.ms / row.frog_steps for row in ROWS.values()]
     return (

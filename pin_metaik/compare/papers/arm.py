@@ -1,4 +1,4 @@
-"""What the arm papers share: a case to solve, and the jobs that try a method on it."""
+"""Common parts of the arm papers: a case to solve, and the jobs that try a method on it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class ArmCase:
     """One target of a paper.
 
     Attributes:
-        name: What it is called in tables.
+        name: Name in tables.
         problem: The target for a refiner, and the box to search.
         objective: The paper's costs (k,) of joint angles X (k, n), in its units.
     """
@@ -38,7 +38,7 @@ class Trial:
     Attributes:
         case: Name of the case.
         method: Name of the method.
-        budget: Evaluations it was allowed.
+        budget: Evaluations that were allowed.
         run: Number of the run, from 0.
         cost: The paper's objective at its answer, in the paper's units.
         x: Its answer, joint angles (n,) in rad.
@@ -90,7 +90,7 @@ def hybrid(
 
 
 def refined(method: str) -> str:
-    """What a method is called when damped least squares follow it."""
+    """Name of a method followed by damped least squares."""
     return f"{method} + DLS"
 
 

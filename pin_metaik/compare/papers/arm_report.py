@@ -1,4 +1,4 @@
-"""What the arm papers' reports share: summaries of runs, hybrids, joint angles, every single run, figures."""
+"""Common parts of the arm papers' reports: summaries of runs, hybrids, joint angles, every single run, figures."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def seconds_per_evaluation(trials: Sequence[Trial]) -> float | None:
 
 
 def hybrids(name: str, trials: Sequence[Trial], cost: str) -> Table:
-    """What the hybrids reached and spent, by case and method."""
+    """Costs that the hybrids reached and evaluations that they spent, by case and method."""
     rows: list[tuple[Value, ...]] = []
     for case, method, budget in _groups([trial for trial in trials if trial.trace is None]):
         runs = of(trials, case=case, method=method, budget=budget)

@@ -1,4 +1,4 @@
-"""What a paper claims, and whether it holds here: a verdict in two words, and the numbers it rests on."""
+"""Claims of a paper, and whether they hold here: a verdict in two words, and the numbers it rests on."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Claim:
     """A claim and its verdict.
 
     Attributes:
-        said: What the paper says, as a sentence without its full stop.
+        said: The claim, as a sentence without its full stop.
         verdict: Whether it holds here.
         because: The numbers that say so.
     """

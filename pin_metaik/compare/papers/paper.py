@@ -1,4 +1,4 @@
-"""What a paper is here: jobs to run, and what to make of those that were done."""
+"""A paper: jobs to run, and the sections of a report made from their results."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ class Options:
 
 @dataclass(frozen=True)
 class Job(Generic[Done]):
-    """A piece of the experiment, seconds rather than minutes long: what is interrupted is lost.
+    """A piece of the experiment, seconds rather than minutes long: an interrupted job is lost.
 
     Attributes:
-        label: What it is, for the progress bar.
+        label: Text for the progress bar.
         work: Does it. A ``KeyboardInterrupt`` must come through.
         size: How long it takes compared with the others, for the progress bar: say, its evaluations.
     """
@@ -54,8 +54,8 @@ class Paper(Generic[Done]):
     """A published experiment that can be run again. Write one file with these and add its line to ``PAPERS``.
 
     Attributes:
-        name: What it is called on the command line.
-        title: What is done, one line.
+        name: Name on the command line.
+        title: The experiment in one line.
         source: Where it was published.
         runs: Its runs of every method on every case; ours where it does not say.
         jobs: The work, in order, the short jobs first.

@@ -125,7 +125,7 @@ def shortest(trials: Sequence[ExactTrial]) -> Table:
 
 
 def pocket(trials: Sequence[PathTrial]) -> str:
-    """What the convex hulls do to a start in a pocket, in a sentence."""
+    """The effect of convex hulls on a start in a pocket, in a sentence."""
     runs = [trial for trial in trials if trial.scene == "U trap"]
     if not runs:
         return "Not run."

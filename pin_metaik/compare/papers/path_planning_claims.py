@@ -1,4 +1,4 @@
-"""What the paper on paths among polygons claims, and what our runs say to it."""
+"""Claims of the paper on paths among polygons, and whether our runs confirm them."""
 
 from __future__ import annotations
 

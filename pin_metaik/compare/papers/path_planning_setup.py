@@ -64,7 +64,7 @@ class PathTrial:
     Attributes:
         scene: Key of the settings.
         method: GA or PSO.
-        fitness: What it minimised.
+        fitness: Name of the fitness that was minimised.
         run: Number, from 0.
         f: Its best fitness.
         length: Of its path.
@@ -119,7 +119,7 @@ def problem(setting: Setting) -> PathProblem:
 
 
 def warm_up(problem: PathProblem) -> None:
-    """Compile what the runs call, so that no run pays for it."""
+    """Compile the loops that the runs call, so that no run is timed with it."""
     from pin_metaik import mobile
 
     problem.optimum  # noqa: B018  # worked out once, and every run asks for it

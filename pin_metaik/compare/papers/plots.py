@@ -18,7 +18,7 @@ PANEL, CATEGORY, MARGIN, HEIGHT = 3.6, 0.3, 0.6, 3.8  # inches
 
 @dataclass(frozen=True)
 class Runs:
-    """Final costs of several runs of a method, and what the paper printed, if it did."""
+    """Final costs of several runs of a method, and the printed ones, if there are any."""
 
     method: str
     costs: Sequence[float]

@@ -102,7 +102,7 @@ def jobs(options: Options) -> Iterator[Job[Trial]]:
 
 
 def sections(trials: Sequence[Trial], options: Options) -> list[Section]:
-    """The two examples, what the printed answer is worth, and the hybrids."""
+    """The two examples, the cost of the printed answer, and the hybrids."""
     searches = [trial for trial in trials if trial.trace is not None]
     panels = {
         name: {
@@ -173,7 +173,7 @@ def table(trials: Sequence[Trial]) -> Table:
 
 
 def printed_answer() -> Table:
-    """O of what is printed: the number, the tip, and the tip that the angles give."""
+    """O of the printed answer: the number, the tip, and the tip that the angles give."""
     example = EXAMPLES["Example B"]
     reached = example.chain().poses(PRINTED_THETA)[0, 0, :3, 3].tolist()
     rows = [

@@ -1,4 +1,4 @@
-"""Running a paper's jobs under a progress bar; Ctrl-C goes through with those that are done."""
+"""Running a paper's jobs under a progress bar; Ctrl-C is raised with the results of the jobs that are done."""
 
 from __future__ import annotations
 

@@ -161,7 +161,7 @@ def record(method: str, outcomes: Outcomes) -> str:
 
 
 def verdict(trials: Sequence[Trial]) -> str:
-    """What the printed times measured, in a sentence."""
+    """The quantity that the printed times measure, in a sentence."""
     wolves, mtde = (seconds_per_evaluation(of(trials, method=m, budget=EQUAL[m])) for m in ("GWO", "MTDE"))
     if wolves is None or mtde is None:
         return "GWO and MTDE were not both run."
@@ -173,7 +173,7 @@ def verdict(trials: Sequence[Trial]) -> str:
 
 
 def wolves_need(trials: Sequence[Trial], options: Options) -> str:
-    """What the wolves' long budget costs, estimated from their short one."""
+    """Time of the wolves' long budget, estimated from their short one."""
     wolves = [method for method in LONG if method != "MTDE"]
     each = [seconds_per_evaluation(of(trials, method=method, budget=SHORT[method])) for method in wolves]
     if options.long or None in each:

@@ -139,7 +139,7 @@ def yaw(geometry: Geometry) -> float:
 
 
 def problem(stroke: int) -> Mechanism:
-    """Our problem: what the paper leaves open is chosen as the fitness in the report says."""
+    """Our problem: settings that the paper does not print are those that the report names."""
     return load_mechanism(f"stroke_{stroke}")
 
 
@@ -161,7 +161,7 @@ def fine_fitness(mechanism: Mechanism) -> float:
 
 
 def sections(done: Sequence[Done], options: Options) -> list[Section]:
-    """Table 1 paper against ours, the readings of it, our optima, and what is not reproducible."""
+    """Table 1 paper against ours, the readings of it, our optima, and figures that cannot be reproduced."""
     evaluated = {(d.stroke, d.reading): d.workspace for d in done if isinstance(d, Evaluated)}
     found = [d for d in done if isinstance(d, Found)]
     return [

@@ -1,4 +1,4 @@
-"""Trajectories with learned turns: the networks' errors, the planner's times, and what the closed form makes of it."""
+"""Trajectories with learned turns: the networks' errors, the planner's times, and the same with the closed form."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the paper on learned turns claims, and what our networks say to it."""
+"""Claims of the paper on learned turns, and whether our networks confirm them."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def remarks(nets: Sequence[NetTrial]) -> Iterator[str]:
 
 
 def plan_remarks(plans: Sequence[PlanTrial]) -> Iterator[str]:
-    """What the search gives away, and what networks do to the end, in sentences."""
+    """Time lost by the search, and errors of the end by networks, in sentences."""
     best = {trial.scene: trial.time for trial in plans if trial.method == "dp"}
     found = {trial.scene: trial.time for trial in plans if trial.method == "de"}
     if best and found.keys() == best.keys():

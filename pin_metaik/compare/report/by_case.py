@@ -1,4 +1,4 @@
-"""A section for each case: who solved how much for what, robot by robot, and every method against every other."""
+"""A section for each case: rates and evaluations of each method, robot by robot, and every pair of methods compared."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.arrays import Array
-from pin_metaik.compare.record import CaseRecord
+from pin_metaik.compare.folder.manifest import CaseEntry
 from pin_metaik.compare.report import figures
 from pin_metaik.compare.report.overview import SPENT, in_words, spent
 from pin_metaik.compare.report.parts import Column, Figure, Section, Table, Value
-from pin_metaik.compare.results import Results, summarise
-from pin_metaik.compare.statistics import Pair, friedman
-from pin_metaik.compare.trial import CURVE
+from pin_metaik.compare.results.results import Results, summarise
+from pin_metaik.compare.results.statistics import Pair, friedman
+from pin_metaik.compare.trials.trial import CURVE
 
 
-def by_case(results: Results, case: CaseRecord) -> Section:
+def by_case(results: Results, case: CaseEntry) -> Section:
     """All there is to know of one case."""
     costs = results.costs(case.name)
     test = friedman(costs)
@@ -28,15 +28,17 @@ def by_case(results: Results, case: CaseRecord) -> Section:
         case.success,
         f"Friedman's test over {test.blocks:,} tasks: chi squared = {test.statistic:.4g}, {in_words(test.p)}.",
     )
-    trials = results.of(case=case.name)
+    trials = results.rows(case=case.name)
     if trials and all(trial.error is not None for trial in trials):
         ((error, count),) = Counter(trial.error for trial in trials).most_common(1)
         text += (f"No trial came to an end: {count:,} of {len(trials):,} raised {error}",)
-    ranks = dict(zip(results.counted, test.ranks.tolist(), strict=True))
+    ranks = dict(zip(results.rankable, test.ranks.tolist(), strict=True))
     rows: list[tuple[Value, ...]] = []
     for method in results.methods:
-        whole = summarise(results.of(case=case.name, method=method))
-        by_robot = [summarise(results.of(robot=robot, case=case.name, method=method)).rate for robot in results.robots]
+        whole = summarise(results.rows(case=case.name, method=method))
+        by_robot = [
+            summarise(results.rows(robot=robot, case=case.name, method=method)).rate for robot in results.robots
+        ]
         rows.append((method, ranks.get(method), *spent(whole), *by_robot))
     columns = (
         Column("method"),
@@ -53,7 +55,7 @@ def rates(results: Results) -> tuple[Figure, ...]:
     found: dict[str, dict[str, tuple[float, float, float]]] = {}
     for case in results.cases:
         for method in results.methods:
-            summary = summarise(results.of(case=case, method=method))
+            summary = summarise(results.rows(case=case, method=method))
             found.setdefault(case, {})[method] = (summary.rate, *summary.interval)
 
     def draw(canvas: Any) -> None:
@@ -67,7 +69,7 @@ def rates(results: Results) -> tuple[Figure, ...]:
 
 def duels(results: Results) -> tuple[Figure, ...]:
     """Every method against every other."""
-    k = len(results.counted)
+    k = len(results.rankable)
     ratios: dict[str, Array] = {}
     certain: dict[str, NDArray[np.bool_]] = {}
     for case in results.cases:
@@ -78,13 +80,13 @@ def duels(results: Results) -> tuple[Figure, ...]:
         ratios[case] = np.median(logs[:, :, None] - logs[:, None, :], axis=0)
         certain[case] = np.eye(k, dtype=bool)
         for pair in results.pairs(case):
-            i, j = results.counted.index(pair.a), results.counted.index(pair.b)
+            i, j = results.rankable.index(pair.a), results.rankable.index(pair.b)
             certain[case][i, j] = certain[case][j, i] = pair.significant
     if not ratios:
         return ()
 
     def draw(canvas: Any) -> None:
-        figures.duels(canvas, results.counted, ratios, certain)
+        figures.duels(canvas, results.rankable, ratios, certain)
 
     width, height = figures.panel_size(len(ratios))
     caption = (
@@ -99,7 +101,7 @@ def convergence(results: Results) -> Section | None:
     curves: dict[str, dict[str, Array]] = {}
     for case in results.cases:
         for method in results.methods:
-            kept = [trial.curve for trial in results.of(case=case, method=method) if trial.curve is not None]
+            kept = [trial.curve for trial in results.rows(case=case, method=method) if trial.curve is not None]
             if kept:
                 table = np.array(kept, dtype=float)  # (trials, m), NaN before the first generation
                 known = ~np.isnan(table).any(axis=0)
@@ -110,7 +112,7 @@ def convergence(results: Results) -> Section | None:
         return None
 
     def draw(canvas: Any) -> None:
-        figures.convergence(canvas, curves, CURVE * results.record.budget, figures.lines(results.methods))
+        figures.convergence(canvas, curves, CURVE * results.manifest.budget, figures.lines(results.methods))
 
     caption = "Median of the best cost so far over all targets and robots; the middle half of the trials is shaded."
     figure = Figure("convergence", caption, draw, figures.panel_size(len(curves)))

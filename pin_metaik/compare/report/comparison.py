@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from pin_metaik.arguments import checked
-from pin_metaik.compare.environment import read_environment
+from pin_metaik.compare.folder.environment import read_environment
+from pin_metaik.compare.folder.store import replace_text
 from pin_metaik.compare.report.by_case import by_case, convergence, duels, rates
 from pin_metaik.compare.report.html import html
 from pin_metaik.compare.report.overview import overview, reading, winners
@@ -15,8 +16,7 @@ from pin_metaik.compare.report.parts import Column, Section, Table, Value
 from pin_metaik.compare.report.seeds import seeds_against_restarts
 from pin_metaik.compare.report.worst import trouble, worst
 from pin_metaik.compare.report.write import need_figures, write
-from pin_metaik.compare.results import Results
-from pin_metaik.compare.store import read_results, replace_text
+from pin_metaik.compare.results.results import Results, read_results
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.output import writable
 

@@ -21,7 +21,7 @@ def html(title: str, lead: Sequence[str], sections: Sequence[Section]) -> str:
 
     Args:
         title: Its heading.
-        lead: Paragraphs below it, plain text; what is in backticks is code.
+        lead: Paragraphs below it, plain text; words in backticks are code.
         sections: The report.
 
     Raises:
@@ -70,7 +70,7 @@ def _paragraphs(text: Iterable[str]) -> str:
 
 
 def _code(text: str) -> str:
-    """Escaped text; what is in backticks is code."""
+    """Escaped text; words in backticks are code."""
     return re.sub("`([^`]+)`", r"<code>\1</code>", escape(text))
 
 

@@ -1,4 +1,4 @@
-"""The first sections of a comparison's report: what was compared, how it ended in short, and who won and lost where."""
+"""The first sections of a comparison's report: a summary, the best and worst methods, and what was compared."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from pin_metaik.compare.cost import FK_WITH_JACOBIAN
+from pin_metaik.compare.methods.cost import FK_WITH_JACOBIAN
 from pin_metaik.compare.report import figures
 from pin_metaik.compare.report.parts import Column, Figure, Section, Table, Value
-from pin_metaik.compare.results import Results, Summary, summarise
-from pin_metaik.compare.statistics import compare_pairs, ecdf, friedman
+from pin_metaik.compare.results.results import Results, Summary, summarise
+from pin_metaik.compare.results.statistics import compare_pairs, ecdf, friedman
 
 POINTS = 240  # of a distribution's drawing
 
@@ -38,7 +38,7 @@ def interval(summary: Summary) -> str:
 
 
 def in_words(p: float) -> str:
-    """A p-value; what is too small for a float is said to be so."""
+    """A p-value; one too small for a float is given as a bound."""
     return f"p = {p:.2g}" if p > 0.0 else "p < 1e-300"
 
 
@@ -46,8 +46,8 @@ def overview(results: Results) -> Section:
     """How every method fared, over all robots and cases."""
     costs = np.concatenate([results.costs(case) for case in results.cases])
     test = friedman(costs)
-    ranks = dict(zip(results.counted, test.ranks.tolist(), strict=True))
-    summaries = {method: summarise(results.of(method=method)) for method in results.methods}
+    ranks = dict(zip(results.rankable, test.ranks.tolist(), strict=True))
+    summaries = {method: summarise(results.rows(method=method)) for method in results.methods}
     order = sorted(results.methods, key=lambda m: (ranks.get(m, np.inf), -summaries[m].rate))
     rows = [(method, ranks.get(method), *spent(summaries[method])) for method in order]
     table = Table(
@@ -58,8 +58,8 @@ def overview(results: Results) -> Section:
     )
     text = (
         "Evaluations are those of the solved trials, processor time that of all. The rank is by evaluations to "
-        "solution on each task, 1 being the best; who did not solve it shares the last place. Where no target can be "
-        "met, solved means that it was said, and all who said so share the first place.",
+        "solution on each task, 1 being the best; methods that did not solve it share the last place. Where no target "
+        "can be met, solved means that the method said so, and all that did share the first place.",
         f"Friedman's test over {test.blocks:,} tasks: chi squared = {test.statistic:.4g}, {in_words(test.p)}.",
     )
     return Section("In short", text, (table,), distributions(results))
@@ -67,11 +67,11 @@ def overview(results: Results) -> Section:
 
 def distributions(results: Results, name: str = "ecdf") -> tuple[Figure, ...]:
     """Share of tasks solved against evaluations, a panel a case."""
-    if not results.trials or not results.counted:
+    if not results.trials or not results.rankable:
         return ()
-    at = np.geomspace(4.0, max(trial.allowed for trial in results.trials), POINTS)
+    at = np.geomspace(4.0, max(trial.budget for trial in results.trials), POINTS)
     shares = {
-        case: {method: ecdf(results.spent(case, method), at) for method in results.counted} for case in results.cases
+        case: {method: ecdf(results.spent(case, method), at) for method in results.rankable} for case in results.cases
     }
 
     def draw(canvas: Any) -> None:
@@ -85,7 +85,7 @@ def distributions(results: Results, name: str = "ecdf") -> tuple[Figure, ...]:
 
 
 def winners(results: Results) -> Section:
-    """Who won and who lost, by case and robot."""
+    """The best and the worst methods, by case and robot."""
     rows: list[tuple[Value, ...]] = []
     for case in results.cases:
         for robot in results.robots:
@@ -95,11 +95,12 @@ def winners(results: Results) -> Section:
             ranks = friedman(costs).ranks
             best = int(np.argmin(ranks))
             others = [i for i in range(len(ranks)) if i != best]
-            names = results.counted
+            names = results.rankable
             pairs = compare_pairs([(names[i], names[best], costs[:, i], costs[:, best]) for i in others])
             equals = ", ".join(pair.a for pair in pairs if not pair.significant) or "nobody"
             rates = {
-                method: summarise(results.of(robot=robot, case=case, method=method)).rate for method in results.methods
+                method: summarise(results.rows(robot=robot, case=case, method=method)).rate
+                for method in results.methods
             }
             least = min(rates.values())
             losers = ", ".join(method for method, rate in rates.items() if rate == least) if least < 1.0 else None
@@ -121,29 +122,29 @@ def winners(results: Results) -> Section:
 
 
 def reading(results: Results) -> Section:
-    """What was compared and what the words mean."""
-    record = results.record
+    """The methods, cases and budgets compared, and the meaning of the terms."""
+    manifest = results.manifest
     sizes = (
         f"{len(results.methods)} methods on {len(results.cases)} cases and {len(results.robots)} robots "
-        f"({', '.join(results.robots)}), {record.targets} targets each, "
-        f"{record.seeds} {'seed' if record.seeds == 1 else 'seeds'}: {len(results.trials):,} trials."
+        f"({', '.join(results.robots)}), {manifest.tasks} tasks each, "
+        f"{manifest.seeds} {'seed' if manifest.seeds == 1 else 'seeds'}: {len(results.trials):,} trials."
     )
     text: tuple[str, ...] = (
         sizes,
-        f"Every trial may spend {record.budget:,} kernel evaluations on a target: forward kinematics count 1, forward "
-        f"kinematics with a Jacobian {FK_WITH_JACOBIAN:g}, as measured. Trials over budget count as unsolved. "
+        f"Every trial may spend {manifest.budget:,} kernel evaluations on a target: forward kinematics count 1, "
+        f"forward kinematics with a Jacobian {FK_WITH_JACOBIAN:g}, as measured. Trials over budget count as unsolved. "
         "All methods get the same targets and, in the same repetition, the same start.",
         "`lm` is Levenberg-Marquardt (Chan) from the given start alone, `lm+restarts` goes on from random ones; `dls` "
         "is the compiled damped least squares with limits inside the step, `qp` a quadratic program a step. `gwo` is a "
         "metaheuristic alone, `gwo+dls` lets it find starts (a quarter of what is left of the budget, then its eight "
         "best points are refined, and again). `default` is `solve_ik` as it comes.",
     )
-    silent = [method for method in results.methods if method not in results.counted]
-    if silent:
-        text += (f"Not ranked, because they do not report evaluations: {', '.join(silent)}.",)
-    text += tuple(f"Not compared: {pair}: {reason}." for pair, reason in record.absent.items())
-    if len(results.trials) < record.trials:
-        text += (f"PARTIAL: {len(results.trials):,} of {record.trials:,} trials are done.",)
+    unranked = [method for method in results.methods if method not in results.rankable]
+    if unranked:
+        text += (f"Not ranked, because they do not report evaluations: {', '.join(unranked)}.",)
+    text += tuple(f"Not compared: {pair}: {reason}." for pair, reason in manifest.absent.items())
+    if len(results.trials) < manifest.trials:
+        text += (f"PARTIAL: {len(results.trials):,} of {manifest.trials:,} trials are done.",)
     columns = (Column("case"), Column("targets"), Column("counts as solved"))
     rows: list[tuple[Value, ...]] = [(case.name, case.about, case.success) for case in results.cases.values()]
     return Section("What was compared", text, (Table("cases", "Cases", columns, rows),))

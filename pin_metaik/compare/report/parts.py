@@ -1,4 +1,4 @@
-"""What an experiment has to tell: sections of sentences, tables and figures, before anybody prints or writes them."""
+"""A report as data: sections of sentences, tables and figures, to be printed or written."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Column:
     """A column of a table.
 
     Attributes:
-        heading: What it holds, with its unit.
+        heading: The quantity, with its unit.
         form: Format of its numbers, e.g. ``".3g"``; the CSV file has them in full.
         meter: Whether its numbers are shares from 0 to 1 that a page may show as bars.
     """
@@ -24,7 +24,7 @@ class Column:
     meter: bool = False
 
     def text(self, value: Value) -> str:
-        """A value as it is shown; ``None`` is a dash."""
+        """A value as text; ``None`` is a dash."""
         if value is None:
             return "-"
         return value if isinstance(value, str) else format(value, self.form)
@@ -55,7 +55,7 @@ class Figure:
 
     Attributes:
         name: Stem of its PNG file, unique in the report.
-        caption: What it shows, one sentence.
+        caption: One sentence on its contents.
         draw: Draws into an empty ``matplotlib.figure.Figure``; needs the extra ``plots``.
         size: Width and height in inches.
     """

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from pin_metaik.compare.report.parts import Column, Section, Table, Value
-from pin_metaik.compare.results import Results, summarise
-from pin_metaik.compare.statistics import Pair, compare_pairs
+from pin_metaik.compare.results.results import Results, summarise
+from pin_metaik.compare.results.statistics import Pair, compare_pairs
 
 RESTARTS = "restarts"
 
@@ -18,13 +18,13 @@ def seeds_against_restarts(results: Results) -> Section | None:
 
     Cases in which no target can be met are left out: there it is the proof that counts, and not the starts.
     """
-    hybrids = [(m, f"{m.partition('+')[2]}+{RESTARTS}") for m in results.counted if "+" in m]
-    hybrids = [(hybrid, control) for hybrid, control in hybrids if hybrid != control and control in results.counted]
+    hybrids = [(m, f"{m.partition('+')[2]}+{RESTARTS}") for m in results.rankable if "+" in m]
+    hybrids = [(hybrid, control) for hybrid, control in hybrids if hybrid != control and control in results.rankable]
     where, tests = [], []
     for case in [case for case in results.cases if not results.hopeless(case)]:
         costs = results.costs(case)
         for hybrid, control in hybrids if len(costs) else []:
-            column = results.counted.index
+            column = results.rankable.index
             tests.append((hybrid, control, costs[:, column(hybrid)], costs[:, column(control)]))
             where.append(case)
     if not tests:
@@ -32,7 +32,7 @@ def seeds_against_restarts(results: Results) -> Section | None:
     pairs = compare_pairs(tests)
     rows: list[tuple[Value, ...]] = []
     for case, pair in zip(where, pairs, strict=True):
-        rates = [summarise(results.of(case=case, method=method)).rate for method in (pair.a, pair.b)]
+        rates = [summarise(results.rows(case=case, method=method)).rate for method in (pair.a, pair.b)]
         rows.append((case, pair.a, *rates, pair.better, pair.worse, pair.ratio, pair.adjusted, verdict(pair)))
     columns = (
         Column("case"),
@@ -56,7 +56,7 @@ def seeds_against_restarts(results: Results) -> Section | None:
 
 
 def verdict(pair: Pair) -> str:
-    """Who is better, if anybody can tell."""
+    """The better of seeds and restarts, if the difference is significant."""
     if not pair.significant:
         return "-"
     return "seeds" if pair.better > pair.worse else RESTARTS

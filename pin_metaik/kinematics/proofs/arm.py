@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pin_metaik.kinematics.kernel.layout import COLUMN, POSE, ROTATES, ROUNDING, SCALE, SHIFT
 from pin_metaik.kinematics.limits import Limits
-from pin_metaik.kinematics.paths import Paths, matrix_of
+from pin_metaik.kinematics.paths import ChainArrays, matrix_of
 from pin_metaik.kinematics.reach import links_of, tightened
 
 Floats = NDArray[np.float64]
@@ -130,7 +130,7 @@ class ProofArm:
         return np.append(rotation.ravel(), place), near + aligned * self.reach + rounding, aligned + ROUNDING
 
 
-def proof_arm(paths: Paths, limits: Limits, tip: int, free: Free) -> ProofArm | None:
+def proof_arm(paths: ChainArrays, limits: Limits, tip: int, free: Free) -> ProofArm | None:
     """The arm of tip number ``tip`` for targets that leave some turns about the tip's axes free; None: no bounds.
 
     Two free axes count as three, which is more than the target allows, so that what is proved holds. There are no
@@ -190,7 +190,7 @@ def _bounded(path: Path, limits: Limits) -> tuple[Floats, Floats] | None:
 def _knots(path: Path, lower: Floats, upper: Floats) -> Floats:
     """Where on each axis its point is (S,), so that the links between them are short in sum; 0 for slides."""
     S = len(path.joints)
-    paths = Paths(path.joints, path.wiring, np.array([0, S]), path.tip[None])
+    paths = ChainArrays(path.joints, path.wiring, np.array([0, S]), path.tip[None])
     links, _, _ = links_of(paths, lower, upper, 0)
     knots = np.zeros(S)
     if links:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pin_metaik.kinematics.kernel.layout import O1, O5_TIP, ROUNDING
 from pin_metaik.kinematics.limits import Limits
-from pin_metaik.kinematics.paths import Paths
+from pin_metaik.kinematics.paths import ChainArrays
 from pin_metaik.kinematics.proofs.deviation import deviation, ideal
 
 Floats = NDArray[np.float64]
@@ -131,7 +131,7 @@ class ClosedFormProof:
     deviation: Floats
 
     @staticmethod
-    def of(form: Floats, paths: Paths, limits: Limits) -> ClosedFormProof:
+    def of(form: Floats, paths: ChainArrays, limits: Limits) -> ClosedFormProof:
         """The proof for an arm's closed form, with how far the arm is from it."""
         exact = ideal(form)
         near, aligned = deviation(paths, exact)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.kinematics.kernel.layout import H1, H2, H3, H4, H6, O1, O1_O2, O4_O5, SIDE_2
-from pin_metaik.kinematics.paths import Paths, matrix_of
+from pin_metaik.kinematics.paths import ChainArrays, matrix_of
 
 Floats = NDArray[np.float64]
 
@@ -20,7 +20,7 @@ def ideal(form: Floats) -> Floats:
     return exact
 
 
-def deviation(paths: Paths, form: Floats) -> tuple[float, float]:
+def deviation(paths: ChainArrays, form: Floats) -> tuple[float, float]:
     """By how much (m, rad) the tip of an arm of six joints may differ from its closed form's, in any configuration.
 
     The two agree where all angles are 0. Turning about an axis that is off by a (rad), through a point that is off by e

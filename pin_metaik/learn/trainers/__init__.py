@@ -30,7 +30,7 @@ TRAINERS: dict[str, type[Trainer]] = {
 
 @checked
 def make_trainer(trainer: str | Trainer) -> Trainer:
-    """A trainer from its name, with its default settings; an object is returned as it is.
+    """A trainer from its name, with its default settings; an object is returned unchanged.
 
     Raises:
         UnknownName: No trainer of that name.

@@ -1,4 +1,4 @@
-"""What a trainer is, and what it is given: a task to reduce the error of, and a record that keeps the best."""
+"""The protocol of a trainer: a fit whose error it reduces, and a record that keeps the best weights."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Scaled conjugate gradient: conjugate directions whose steps need no line search."""
+"""Scaled conjugate gradient: conjugate directions without a line search."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class SCG:
 
     Attributes:
         sigma: Step of the difference that estimates the curvature.
-        lamda: First scale: what is added to the curvature to make it positive.
+        lamda: First scale, which is added to the curvature to make it positive.
     """
 
     sigma: float = 5e-5

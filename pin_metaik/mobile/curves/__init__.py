@@ -1,1 +1,1 @@
-"""Vehicles that cannot turn on the spot: curves of bounded curvature, and what a footprint sweeps along them."""
+"""Vehicles that cannot turn on the spot: curves of bounded curvature, and the area swept along them."""

@@ -30,7 +30,7 @@ class Curve:
     Attributes:
         start: Pose (x, y, heading) in m and rad.
         radius: Of the arcs, m.
-        word: What the pieces are, e.g. ``"LSR"``.
+        word: Kinds of the pieces, e.g. ``"LSR"``.
         lengths: How long they are, m; below zero backwards.
 
     Raises:

@@ -1,4 +1,4 @@
-"""What a vehicle's outline sweeps along a motion, and the first thing it meets: by bounds, not by samples.
+"""The area that a vehicle's outline sweeps along a motion, and its first contact: by bounds, not by samples.
 
 Between two places nothing of the outline is farther from where it is in the middle than the way travelled plus the turn
 times its reach. So if the outline in the middle is farther than that from all obstacles, the whole stretch is free;
@@ -81,7 +81,7 @@ class Footprint:
 
     @checked
     def at(self, poses: Array) -> np.ndarray:
-        """The polygon, without what is around it, at poses (n, 3): shapely geometries (n,)."""
+        """The polygon without its clearance, at poses (n, 3): shapely geometries (n,)."""
         x, y, heading = array("poses", poses, "n", 3).T
         turned = (self.corners @ [1, 1j]) * np.exp(1j * heading)[:, None]
         placed = np.stack((x[:, None] + turned.real, y[:, None] + turned.imag), axis=-1)
@@ -112,7 +112,7 @@ class Contact:
 
 @checked
 def first_contact(motion: Motion, footprint: Footprint, obstacles: Any, tolerance: float = TOLERANCE) -> Contact | None:
-    """The first contact of a footprint that moves with an obstacle; None if there is none, for certain.
+    """The first contact of a moving footprint with an obstacle; None: proved free of contact.
 
     That is so but for the rounding of doubles, which is far below the tolerance.
 
@@ -125,7 +125,7 @@ def first_contact(motion: Motion, footprint: Footprint, obstacles: Any, toleranc
 
     Raises:
         InvalidSetting: A tolerance that is not above zero.
-        InvalidGeometry: Obstacles that are none.
+        InvalidGeometry: An obstacle is no geometry.
     """
     within("tolerance", tolerance, np.finfo(float).tiny)
     solid = read_obstacles(obstacles)
@@ -161,7 +161,7 @@ def _search(
 
 
 def _gaps(tree: shapely.STRtree, shapes: np.ndarray, solid: Sequence[shapely.Geometry]) -> Array:
-    """Distances (n,) of shapes from the nearest of what is solid."""
+    """Distances (n,) of shapes from the nearest obstacle."""
     (whose, _), distances = tree.query_nearest(shapes, return_distance=True, all_matches=False)
     gaps = np.empty(len(shapes))
     gaps[whose] = distances

@@ -15,7 +15,7 @@ PIECES = 5  # of the longest word
 
 @checked
 def shortest_curve(start: Pose, goal: Pose, turning_radius: float, *, reverse: bool = False) -> Curve:
-    """The shortest curve from pose to pose whose radius is nowhere smaller, in a plane without obstacles.
+    """The shortest curve from pose to pose with at least the given radius, in a plane without obstacles.
 
     It ends at the goal to about 1e-9, in m and rad, which is how near to none an arc counts as none.
 
@@ -27,7 +27,7 @@ def shortest_curve(start: Pose, goal: Pose, turning_radius: float, *, reverse: b
             of Dubins' six.
 
     Raises:
-        InvalidSetting: Poses that are none, or a radius that is not above zero.
+        InvalidSetting: A malformed pose, or a radius not above zero.
     """
     turning(turning_radius)
     a, b = (array(name, pose, 3)[None] for name, pose in (("start", start), ("goal", goal)))

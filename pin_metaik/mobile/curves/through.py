@@ -35,7 +35,7 @@ def curve_through(
     goal_heading: float | None = None,
     reverse: bool = False,
 ) -> Curve:
-    """A short curve through the points of a path whose radius is nowhere smaller, clear of obstacles.
+    """A short curve through the points of a path with at least the given radius, clear of obstacles.
 
     Between neighbouring points it is the shortest there is for its headings there. The headings are the best of a grid,
     by dynamic programming, and then of finer ones around them: short, not proven the shortest. Pieces that meet an
@@ -52,7 +52,7 @@ def curve_through(
 
     Raises:
         InvalidSetting: A radius that is not above zero.
-        InvalidGeometry: A path or obstacles that are none.
+        InvalidGeometry: A malformed path or obstacle.
         Obstructed: Every curve that was tried meets an obstacle; a ``Blocked`` that says where the best one does.
     """
     turning(turning_radius)
@@ -107,7 +107,7 @@ class _Leg:
         self.met: dict[tuple[float, float], Contact | None] = {}
 
     def lengths(self, into: Array, out: Array) -> Array:
-        """Lengths (k, m) for headings (k,) at the first point and (m,) at the second; inf for what is known to meet."""
+        """Lengths (k, m) for headings (k,) at the first point and (m,) at the second; inf where one collides."""
         first, second = (grid.ravel() for grid in np.meshgrid(into, out, indexing="ij"))
         starts = np.column_stack((np.tile(self.a, (len(first), 1)), first))
         goals = np.column_stack((np.tile(self.b, (len(first), 1)), second))

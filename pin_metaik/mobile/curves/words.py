@@ -55,7 +55,7 @@ def _mirrored(word: str) -> str:
 
 
 def _forward(angle: Array) -> Array:
-    """An angle in [0, 2 pi), where what is below zero by rounding only is zero."""
+    """An angle in [0, 2 pi); one below zero by rounding only is zero."""
     turned = np.mod(angle, 2 * np.pi)
     return np.where(turned > 2 * np.pi - FULL, 0.0, turned)
 
@@ -66,12 +66,12 @@ def _near(angle: Array) -> Array:
 
 
 def _real(square: Array) -> Array:
-    """The root of what is not below zero, but by rounding; else NaN."""
+    """The square root of a number that is at most by rounding below zero; else NaN."""
     return np.sqrt(np.where(square > -ROUNDING, np.maximum(square, 0.0), np.nan))
 
 
 def _within(share: Array) -> Array:
-    """A sine or cosine, NaN where it is none."""
+    """A number as a sine or cosine; NaN beyond 1."""
     return np.where(np.abs(share) <= 1 + ROUNDING, np.clip(share, -1, 1), np.nan)
 
 

@@ -34,7 +34,7 @@ def fastest_trajectory(
         scene: The world, start and goal, in m.
         vehicle: The robot.
         paths: How many homotopy classes to try, for each margin.
-        margins: Distances, in m, that paths keep on top of the robot's radius. Those that leave no way are skipped.
+        margins: Distances, in m, that paths keep on top of the robot's radius. Margins without a path are skipped.
         join: How grown obstacles end at their corners; see ``PathProblem.of``.
 
     Raises:

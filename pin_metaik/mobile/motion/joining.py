@@ -15,14 +15,14 @@ from pin_metaik.mobile.motion.turn import clothoid
 from pin_metaik.mobile.motion.vehicle import Vehicle
 
 TURNS = np.linspace(-2 * np.pi, 2 * np.pi, 129)  # rad, among which those that lead towards a place are looked for
-AIMED = 1e-11  # m; a turn that changes less at the place it aims at is none
+AIMED = 1e-11  # m; a turn that moves the aimed-at place by less is left out
 
 
 class Joining(NamedTuple):
     """Phases that end heading for a place, not turning.
 
     Attributes:
-        phases: What the robot does.
+        phases: Phases of the motion.
         end: Pose (x, y, heading) where they end.
         v: Speed there, m/s.
     """

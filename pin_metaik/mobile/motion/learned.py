@@ -54,7 +54,7 @@ DESIGNS: dict[str, Design] = {
 
 @dataclass(frozen=True)
 class TurnReport:
-    """What a network did to a plan.
+    """Errors of a plan that come from a network.
 
     Attributes:
         tangent_error: Largest error of a tangent length in the plan, m.
@@ -77,7 +77,7 @@ class LearnedTurn:
 
     Attributes:
         vehicle: The robot it was learned for.
-        design: What it sees and says.
+        design: Its input and output transformations.
         regressor: The network.
         angles: Smallest and largest angle it was trained with, rad.
         speeds: Smallest and largest speed, m/s.
@@ -155,7 +155,7 @@ class LearnedTurn:
 
 
 def _together(v: ArrayLike, theta: ArrayLike) -> tuple[Array, Array]:
-    """Speeds and angles that somebody gave, of one shape.
+    """Speeds and angles of a caller, checked and of one shape.
 
     Raises:
         InvalidSetting: Not numbers, or of shapes that do not go together.

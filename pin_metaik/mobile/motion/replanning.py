@@ -62,7 +62,7 @@ def plan_in_motion(
 
     Raises:
         InvalidSetting: A state beyond the robot's limits, or one at the goal that turns; a radius below zero.
-        InvalidGeometry: A path or obstacles that are none.
+        InvalidGeometry: A malformed path or obstacle.
         NoRoom: No motion of this form leads from the state onto the path.
     """
     keep = vehicle.radius if radius is None else radius
@@ -168,7 +168,7 @@ def _quickest(
     keep: float,
     limit: float = np.inf,
 ) -> TrajectoryPlan | None:
-    """The quickest motion that keeps clear, below a limit in s; else the first that does not; None if there is none.
+    """The quickest collision-free motion within a limit in s; else the first motion that collides; None without any.
 
     Obstacles make corners slower, so the time without them is a bound: motions are made for the best bounds first,
     until the next bound is no better than what is found.

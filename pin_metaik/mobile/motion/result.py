@@ -1,4 +1,4 @@
-"""A planned trajectory: what it is, what it keeps clear of, where it ends, and what a user should know about it."""
+"""A planned trajectory: the motion, its clearance, its end, and remarks for the user."""
 
 from __future__ import annotations
 
@@ -29,20 +29,20 @@ JOINED = "quickest of some ways onto the path and off it, each with the best spe
 
 @dataclass(frozen=True, eq=False)
 class TrajectoryPlan:
-    """A trajectory along a path, and what is to be known about it.
+    """A trajectory along a path, with its clearance, its errors and remarks.
 
     Attributes:
         trajectory: The motion, as the robot would execute it.
         route: The path with its turns and the speeds that its corners allow.
         v: Speed in each corner (n,), m/s; 0 is stop and turn.
         method: ``dp``, ``de`` or ``ann``.
-        obstacles: What it has to keep clear of.
+        obstacles: Obstacles that it has to keep clear of.
         radius: Distance to keep, m.
         evaluations: Times computed in the search for the speeds.
         seconds: Time taken for planning, s; without learning.
         seed: Of every random choice; None if a generator was handed in.
         interrupted: Whether the search was stopped.
-        learned: What the network's errors do, if one was used.
+        learned: Effects of the network's errors, if one was used.
         goal: Where it is to end (x, y), m.
         joining: Time, s, of what leads from a state in motion onto the route, and off it to the state at the goal.
     """
@@ -108,7 +108,7 @@ class TrajectoryPlan:
 
     @property
     def notes(self) -> list[str]:
-        """What a user should know, in sentences."""
+        """Remarks for the user, in sentences."""
         stops = [str(i + 1) for i, v in enumerate(self.v) if v == 0]
         tight = [str(i + 1) for i, cap in enumerate(self.route.caps) if cap == 0]
         said = [JOINED if self.joining else OPTIMALITY] if self.method == "dp" else []

@@ -162,7 +162,7 @@ class Route:
         return free if free > SLOW * self.vehicle.v_max else 0.0
 
     def _speeds(self, V: Array) -> Array:
-        """Speeds (k, n) that somebody gave."""
+        """Speeds (k, n) of a caller, checked."""
         return array("V", V, "k", len(self.turns), finite=False)
 
     def _with_ends(self, V: Array) -> Array:
@@ -196,7 +196,7 @@ def _cut(shape: _Shape, v: float) -> shapely.Polygon:
 
 
 def keeps_clear(places: Sequence[shapely.Geometry], solid: shapely.Geometry, radius: float, slack: float = 0.0) -> bool:
-    """Whether places keep a distance from what is solid; a robot without a radius may touch it, but no line or point.
+    """Whether places keep a distance from an obstacle; a robot of radius 0 may touch polygons, but no line or point.
 
     Args:
         places: Where the robot's centre is.

@@ -1,4 +1,4 @@
-"""The speeds at the corners of a route: the best by dynamic programming, or what a metaheuristic finds."""
+"""The speeds at the corners of a route: the best by dynamic programming, or the best that a metaheuristic finds."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def searched_speeds(
     Args:
         route: The route.
         algorithm: By name or as an object.
-        budget: What it may spend; an evaluation is one choice of all speeds.
+        budget: Budget of the search; an evaluation is one choice of all speeds.
         rng: Seed or generator; ``None`` is a fixed seed.
         tangents: Tangent lengths (k, n) at speeds V (k, n), if not the true ones.
         watch: Called after every generation of the search with evaluations done and in all; True ends it.

@@ -1,4 +1,4 @@
-"""From a path to a trajectory: the quickest of its form, or what the paper's method makes of it."""
+"""From a path to a trajectory: the quickest of its form, or the one of the paper's method."""
 
 from __future__ import annotations
 
@@ -59,14 +59,14 @@ def plan_trajectory(
             lengths, as the paper, and executes what comes out with the true turns.
         radius: Distance of the robot's centre from obstacles, in m; default: the robot's radius.
         algorithm: What searches, for ``de`` and ``ann``.
-        budget: What it may spend.
+        budget: Budget of the search.
         rng: Seed or generator; ``None`` is a fixed seed.
         model: The network for ``ann``; default: a new one, learned in a second.
         watch: Called after every generation of the search with evaluations done and in all; True ends it.
 
     Raises:
         InvalidSetting: No such method, or a radius below zero.
-        InvalidGeometry: A path that is none, or that turns back by 180 degrees; obstacles that are none.
+        InvalidGeometry: A malformed path, or one that turns back by 180 degrees; a malformed obstacle.
         Interrupted: Ctrl-C, after the first generation of a search; its ``result`` is the plan with the best speeds.
     """
     one_of("method", method, Method)

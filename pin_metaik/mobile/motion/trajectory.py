@@ -127,7 +127,7 @@ class Trajectory:
     """A robot's motion as a list of phases, from a pose.
 
     Attributes:
-        phases: What it does, one after the other.
+        phases: Its phases, one after the other.
         start: Pose (x, y, heading) in m and rad.
         v: Speed at the start, m/s.
         duration: Of the whole, s.

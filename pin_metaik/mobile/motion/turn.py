@@ -29,7 +29,7 @@ def lead_time(theta: ArrayLike, vehicle: Vehicle, v: ArrayLike = 0.0) -> Array:
         v: Speeds (...), m/s; they matter to a differential drive only.
 
     Raises:
-        InvalidGeometry: An angle outside [0, pi): who turns back on the spot has no corner to round.
+        InvalidGeometry: An angle outside [0, pi): a robot that turns back on the spot has no corner to round.
     """
     return _shape(theta, vehicle, v)[0]
 

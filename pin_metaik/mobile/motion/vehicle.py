@@ -1,4 +1,4 @@
-"""What robots can do: synchro-drives, whose speed and turning rate are free of each other, and differential drives."""
+"""Limits of robots: synchro-drives, with independent speed and turning rate, and differential drives."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pin_metaik.lookup import lookup
 from pin_metaik.mobile.files import number
 
 INCH = 0.0254  # m
-STILL = 1e-12  # m/s; a wheel always has so much left for turning, which nobody sees and which can be divided by
+STILL = 1e-12  # m/s; kept of the wheel speed for turning: negligible, and above zero, so that it can be divided by
 
 
 @checked
@@ -116,7 +116,7 @@ class DifferentialDrive:
         return True
 
     def omega_at(self, v: ArrayLike) -> Array:
-        """Largest turning rate (...), rad/s, at speeds v (...), m/s: what the outer wheel has left."""
+        """Largest turning rate (...), rad/s, at speeds v (...), m/s: the rest of the outer wheel's limit."""
         return np.asarray(2 * np.maximum(self.wheel_speed - np.abs(array("v", v, "...")), STILL) / self.track)
 
     def wheels(self, v: ArrayLike, omega: ArrayLike) -> Array:

@@ -1,4 +1,4 @@
-"""A grid over the border of a free space: whether two points see each other takes a look at what is near the line."""
+"""A grid over the border of a free space: whether two points see each other is tested with the edges near the line."""
 
 from __future__ import annotations
 

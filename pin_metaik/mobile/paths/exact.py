@@ -1,4 +1,4 @@
-"""The shortest path among polygons: A* over the visibility graph, and a proof that what comes out is free.
+"""The shortest path among polygons: A* over the visibility graph, and a proof that the path is free.
 
 The graph is never built: a corner's lines of sight are looked for when the search opens it (A* opens those near the
 straight line first, and in an open world few others).
@@ -34,7 +34,7 @@ def shortest_path(space: FreeSpace, start: Point, goal: Point, visibility: Visib
         space: The free space.
         start: (x, y).
         goal: (x, y).
-        visibility: Who sees whom in the space, if that was already prepared.
+        visibility: Visibility of the space, if it was prepared earlier.
 
     Raises:
         Blocked: The robot cannot be at the start or the goal.
@@ -59,7 +59,7 @@ class Search:
     """A* between a start and a goal.
 
     Attributes:
-        visibility: Who sees whom.
+        visibility: Visibility of the space.
         points: Nodes (m, 2): the corners, start, goal.
         vertex: Which vertex of the border each node is (m,); -1 for start and goal.
     """
@@ -76,7 +76,7 @@ class Search:
         return Search(visibility, *visibility.nodes(start, goal))
 
     def free_path(self) -> Path | None:
-        """The shortest way that the exact test lets through, too; None if there is none."""
+        """The shortest way that the exact test lets through, too; None if there is no such way."""
         refused: Edges = set()
         space = self.visibility.space
         while (nodes := self.route(refused)) is not None:
@@ -87,7 +87,7 @@ class Search:
         return None
 
     def route(self, refused: Edges) -> list[int] | None:
-        """Nodes of the shortest way from start to goal along no edge that is refused; None if there is none."""
+        """Nodes of the shortest way from start to goal along no edge that is refused; None if there is no such way."""
         m = len(self.points)
         start, goal = m - 2, m - 1
         length, settled = np.full(m, np.inf), np.zeros(m, dtype=bool)

@@ -1,4 +1,4 @@
-"""What a path through via points costs, for planners that search: by the truth, or as the paper has it."""
+"""The cost of a path through via points, for planners that search: exact, or as in the paper."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Objective(Protocol):
 
 
 class Fitness(Protocol):
-    """A way to say what a path costs; its settings are its fields."""
+    """A cost function of paths; its settings are its fields."""
 
     def on(self, space: FreeSpace, start: Point, goal: Point) -> Objective:
         """The costs of paths from start to goal in a free space."""
@@ -106,7 +106,7 @@ FITNESSES: dict[str, type[Fitness]] = {"exact": ExactFitness, "paper": PaperFitn
 
 
 def make_fitness(fitness: str | Fitness) -> Fitness:
-    """A fitness from its name, with its default settings; an object is returned as it is.
+    """A fitness from its name, with its default settings; an object is returned unchanged.
 
     Raises:
         UnknownName: No fitness of that name.

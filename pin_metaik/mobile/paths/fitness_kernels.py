@@ -1,4 +1,4 @@
-"""The compiled loops of the fitnesses: what the paths of a population cost."""
+"""The compiled loops of the fitnesses: costs of the paths of a population."""
 
 from __future__ import annotations
 

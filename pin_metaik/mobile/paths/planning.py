@@ -56,7 +56,7 @@ def plan_path(
             or as an object.
         fitness: What metaheuristics minimise: ``"exact"``, ``"paper"`` or an object.
         via: Via points. With fewer than the shortest path has corners it is out of reach.
-        budget: What a metaheuristic may spend; an evaluation is one path.
+        budget: Budget of a metaheuristic; an evaluation is one path.
         rng: Seed or generator; ``None`` is a fixed seed.
         seeded: Whether to start one individual at the shortest path: for a fitness that is not its length, or to see
             that the search can only be better than that.

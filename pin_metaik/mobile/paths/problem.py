@@ -65,7 +65,7 @@ class PathProblem:
 
     @cached_property
     def optimum(self) -> Path:
-        """The shortest path. Raises NoPath if there is none."""
+        """The shortest path. Raises NoPath without one."""
         return shortest_path(self.space, self.scene.start, self.scene.goal, self.visibility)
 
     @checked

@@ -1,4 +1,4 @@
-"""A planned path: what it is worth by the exact test and against the shortest."""
+"""A planned path: whether it is free by the exact test, and its gap to the shortest."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ class PathPlan:
     Attributes:
         path: From start to goal.
         status: Whether it is the shortest, free, or not a path at all.
-        optimum: Length of the shortest path among the obstacles as they are grown; None if there is no way.
+        optimum: Length of the shortest path among the grown obstacles; None if there is no way.
         cost: The fitness at the path; the exact planner's is its length.
         method: Name of the planner.
         evaluations: Paths whose fitness was computed; 0 for the exact planner.
         seconds: Time taken, in s: of a search without the optimum that the gap is measured by; of the exact planner
-            without what the problem had worked out already.
+            without the work done earlier for the problem.
         seed: Of every random choice; None if a generator was handed in.
         interrupted: Whether its search was stopped, by Ctrl-C or its watch.
         problem: What was asked.
@@ -79,7 +79,7 @@ class PathPlan:
 
     @property
     def gap(self) -> float | None:
-        """How much longer than the optimum it is, as a share of that; None for a path that is none."""
+        """How much longer than the optimum it is, as a share of that; None for a path that is not free."""
         if self.optimum is None or not self.collision_free:
             return None
         return max(0.0, self.length / self.optimum - 1) if self.optimum else 0.0

@@ -64,12 +64,12 @@ class VisibilityGraph:
 
 @checked
 class Visibility:
-    """Who sees whom in a free space, whatever start and goal.
+    """Which points of a free space see each other, for any start and goal.
 
     Attributes:
         space: The free space.
         border: Its border.
-        grid: What is near each place of it.
+        grid: The edges near each cell of the space.
     """
 
     def __init__(self, space: FreeSpace) -> None:

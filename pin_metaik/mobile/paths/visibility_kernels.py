@@ -1,4 +1,4 @@
-"""The compiled loops of the visibility graph: who sees whom.
+"""The compiled loops of the visibility graph: which nodes see each other.
 
 Arrays they share:
 
@@ -280,7 +280,7 @@ def seen_from(
     columns: int,
     sees: NDArray[np.bool_],
 ) -> None:
-    """Which nodes (m,), from `begin` on, a node sees along a line that is taut at both; not where it stands itself."""
+    """Which nodes (m,), from ``begin`` on, a node sees along a line that is taut at both ends; never itself."""
     x, y, k = points[node, 0], points[node, 1], vertex[node]
     guess = -1
     for m in range(begin, len(points)):

@@ -121,7 +121,7 @@ class FreeSpace:
 
     @cached_property
     def solid(self) -> shapely.Geometry:
-        """The obstacles as they are given, joined."""
+        """The union of the obstacles, not grown."""
         return shapely.union_all(self.scene.obstacles)
 
     def holds(self, path: Array) -> bool:
@@ -180,7 +180,7 @@ class FreeSpace:
 
 
 def _region(scene: Scene, clearance: float, join: Join) -> shapely.Geometry:
-    """Where the robot may be: inside the walls, outside what is grown, without contacts and slivers."""
+    """The region of the robot: inside the walls, outside the grown obstacles, without contacts and slivers."""
     box = x_min, y_min, x_max, y_max = _walls(scene, clearance)
     touch = _touch(box)
     flat = [obstacle for obstacle in scene.obstacles if obstacle.geom_type != "Polygon"]
@@ -198,7 +198,7 @@ def _region(scene: Scene, clearance: float, join: Join) -> shapely.Geometry:
 
 
 def _without(inside: shapely.Geometry, solid: shapely.Geometry, touch: float) -> shapely.Geometry:
-    """The polygons of the inside that are not solid, on a grid, without those that have no width."""
+    """The free polygons inside the walls, on a grid, without those of no width."""
     grid = 10.0 ** math.floor(math.log10(GRID * touch))
     region = shapely.difference(inside, solid, grid_size=grid)
     parts = shapely.get_parts(shapely.set_precision(region, 0).simplify(grid))
@@ -214,7 +214,7 @@ def _beyond(box: Box) -> shapely.Polygon:
 
 
 def _line(path: Array) -> shapely.LineString:
-    """A path (n, 2) that somebody gave, n >= 2.
+    """A path (n, 2) of a caller, checked, n >= 2.
 
     Raises:
         InvalidGeometry: It is none.

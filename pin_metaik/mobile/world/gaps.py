@@ -58,7 +58,7 @@ class Contacts:
 
 
 def opened(solid: shapely.Geometry, touch: float) -> shapely.Geometry:
-    """What is solid, without its parts too thin to count."""
+    """The obstacles, without parts too thin to count."""
     core = solid.buffer(-touch, join_style="mitre")
     return core.buffer(touch, join_style="mitre")
 

@@ -65,7 +65,7 @@ class OccupancyGrid:
 
     @checked
     def without_specks(self, cells: int) -> OccupancyGrid:
-        """The grid without what is noise, perhaps: groups of fewer occupied cells, joined along edges or at corners.
+        """The grid without specks: groups of fewer occupied cells, joined along edges or at corners.
 
         Args:
             cells: How many make an obstacle, at least 1.

@@ -34,7 +34,7 @@ def grow(obstacles: Sequence[shapely.Geometry], clearance: float, join: Join = "
     grows in proportion to the clearance, so a larger clearance never frees anything.
 
     Args:
-        obstacles: Polygons, lines and points; polygons come back first, as they are.
+        obstacles: Polygons, lines and points; polygons come back first, unchanged.
         clearance: Distance to keep, at least 0, in the obstacles' unit.
         join: ``mitre`` has fewer vertices, ``round`` gives more room at corners.
 

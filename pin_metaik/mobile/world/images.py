@@ -86,7 +86,7 @@ def read_pgm(data: bytes, path: Path) -> NDArray[np.float64]:
     """Lightness (rows, columns) from 0 (black) to 1 of a PGM image, plain (P2) or raw (P5), row 0 the highest.
 
     Args:
-        data: What is in the file.
+        data: Contents of the file.
         path: The file, for messages.
 
     Raises:

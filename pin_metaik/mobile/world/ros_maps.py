@@ -70,8 +70,8 @@ def cell_values(pixels: Pixels, mode: Mode, negate: bool, occupied: float, free:
         mode: ``trinary`` knows occupied, free and unknown, and takes opacity for one more colour; ``scale`` has
             percents between, and what is transparent is unknown; ``raw`` has the pixels' values, unknown above 100.
         negate: Whether white is occupied.
-        occupied: Occupied is what is darker than this, of 1.
-        free: Free is what is lighter than this.
+        occupied: Cells darker than this, of 1, are occupied.
+        free: Cells lighter than this are free.
     """
     lightness = pixels.lightness
     if mode == "raw":

@@ -41,7 +41,7 @@ class Scene:
         name: What to call it.
 
     Raises:
-        InvalidGeometry: Points that are not two finite numbers, bounds that are crossed, polygons that are none.
+        InvalidGeometry: A point is not two finite numbers, bounds are crossed, or a polygon is malformed.
     """
 
     start: Point
@@ -73,7 +73,7 @@ class Scene:
         return replace(self, start=self.start if start is None else start, goal=self.goal if goal is None else goal)
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain values, as a scene's JSON file has them; what is no polygon without holes, as GeoJSON."""
+        """Plain values, as a scene's JSON file has them; all but polygons without holes as GeoJSON."""
         return {
             "start": list(self.start),
             "goal": list(self.goal),
@@ -114,7 +114,7 @@ def load_scene(
         UnknownName: No such scene.
         InvalidGeometry: The file is missing or malformed, or has a key that nobody would read; or nobody says where the
             start or goal is.
-        InvalidSetting: What is said of grids, of something else.
+        InvalidSetting: Settings of grids, for a source that is no grid.
     """
     path = Path(source)
     one_of("unknown", unknown, Unknown)
@@ -153,7 +153,7 @@ def scene_of(mapping: Mapping[str, Any], name: str = "scene", start: Any = None,
     GeoJSON is a scene, too: start, goal and bounds are members of its outermost object, or come from the caller.
 
     Raises:
-        InvalidGeometry: A key is missing, makes no sense or is one that nobody would read.
+        InvalidGeometry: A key is missing, makes no sense or is unknown.
     """
     if mapping.get("type") in GEOJSON:
         slips = (key for key in mapping if get_close_matches(str(key), KEYS, n=1, cutoff=CLOSE))

@@ -29,7 +29,7 @@ def save_points(workspace: Workspace, path: str | Path, metres: float = 1.0) -> 
         metres: The unit of length to write in, m: 0.001 for mm.
 
     Raises:
-        InvalidSetting: Another ending, or a unit that is none.
+        InvalidSetting: Another ending, or an unknown unit.
         CannotWrite: The file cannot be written.
     """
     if not 0.0 < metres < np.inf:

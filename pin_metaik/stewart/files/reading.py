@@ -274,7 +274,7 @@ def _task(content: object, path: str, length: Unit, angle: Unit) -> DesignTask:
 
 
 def _spans(table: Table, key: str, length: Unit, angle: Unit) -> Any:
-    """What a design may change of one of the dimensions of ``Ranges``."""
+    """The range of a design in one of the dimensions of ``Ranges``."""
     if key in SIDES:
         return table.point_spans(key, length)
     return table.spans(key, angle) if key in ANGLES_EACH else table.span(key, length)

@@ -1,4 +1,4 @@
-"""Trajectories from and to CSV files: poses over time in, what the legs do along them out."""
+"""Trajectories from and to CSV files: poses over time in, coordinates and rates of the legs out."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def _numbers(path: str | Path, line: int, row: list[str], names: list[str]) -> l
 
 @checked
 def save_motion(motion: Motion, path: str | Path, metres: float = 1.0) -> Path:
-    """Write what the legs do along a trajectory to a CSV file: a row a sample.
+    """Write coordinates and rates of the legs along a trajectory to a CSV file: a row a sample.
 
     The columns are time in s, the lengths d1 ... and rates v1 ... of the legs, nu, and the state of the pose. Of servos
     they are the angles a1 ... and rates w1 ..., in degrees and degrees a second; nan where a rod does not reach.

@@ -210,8 +210,8 @@ def beyond_cone(d: float, along: float, cos: float) -> float:
 @shared
 def ruled_out(
     base: Floats,
-    sockets: Floats,
-    turned_sockets: Floats,
+    joint_axes: Floats,
+    turned_joint_axes: Floats,
     limits: Floats,
     servos: Floats | None,
     pairs: Ints,
@@ -232,8 +232,8 @@ def ruled_out(
         d, at_base, at_platform = 0.0, 0.0, 0.0
         for c in range(3):
             d += legs[i, c] * legs[i, c]
-            at_base += legs[i, c] * sockets[i, c]
-            at_platform -= legs[i, c] * turned_sockets[i, c]
+            at_base += legs[i, c] * joint_axes[i, c]
+            at_platform -= legs[i, c] * turned_joint_axes[i, c]
         d = math.sqrt(d)
         if d < limits[0] - radius or d > limits[1] + radius:
             return True
@@ -252,8 +252,8 @@ def ruled_out(
 def cover(
     base: Floats,
     turned: Floats,
-    sockets: Floats,
-    turned_sockets: Floats,
+    joint_axes: Floats,
+    turned_joint_axes: Floats,
     limits: Floats,
     servos: Floats | None,
     pairs: Ints,
@@ -281,7 +281,7 @@ def cover(
                     for i in range(n):
                         for c in range(3):
                             legs[i, c] = place[c] + turned[o, i, c] - base[i, c]
-                    if not ruled_out(base, sockets[0], turned_sockets[o], limits, servos, pairs, legs, radius):
+                    if not ruled_out(base, joint_axes[0], turned_joint_axes[o], limits, servos, pairs, legs, radius):
                         left += 1
                         for c in range(3):
                             out[0, c] = min(out[0, c], place[c] - 0.5 * size[c])

@@ -28,7 +28,7 @@ def close(
     i: int,
     base: Floats,
     servos: Floats,
-    sockets: Floats,
+    joint_axes: Floats,
     legs: Floats,
     starts: Floats,
     axes: Floats,
@@ -41,7 +41,7 @@ def close(
         i: The leg.
         base: b_i (n, 3).
         servos: As above.
-        sockets: Axes (n, 3) of the joints at the horns: along the horn, the way it moves, and along its axis.
+        joint_axes: Axes (n, 3) of the joints at the horns: along the horn, the way it moves, and along its axis.
         legs: v_i (n, 3); afterwards the rod.
         starts: Afterwards the tip of the horn (n, 3).
         axes: Afterwards the axis of the joint there, in the base frame (n, 3).
@@ -75,7 +75,9 @@ def close(
         starts[i, e] = base[i, e] + tip
         legs[i, e] -= tip
         axes[i, e] = (
-            sockets[i, 0] * (cos * u + sin * w) + sockets[i, 1] * (cos * w - sin * u) + sockets[i, 2] * servos[i, e + 6]
+            joint_axes[i, 0] * (cos * u + sin * w)
+            + joint_axes[i, 1] * (cos * w - sin * u)
+            + joint_axes[i, 2] * servos[i, e + 6]
         )
     lengths[i], divisors[i] = rod, horn * sine
     return CLOSED

@@ -2,8 +2,8 @@
 
 Arrays every kernel takes (made by ``Geometry`` and its limits; n legs):
 
-* ``base``, ``arms`` (n, 3): b_i in the base frame, m_i in the platform frame.
-* ``sockets`` (2, n, 3): unit axes of the base joints (base frame) and of the platform joints (platform frame).
+* ``base``, ``platform_anchors`` (n, 3): b_i in the base frame, m_i in the platform frame.
+* ``joint_axes`` (2, n, 3): unit axes of the base joints (base frame) and of the platform joints (platform frame).
 * ``servos`` (n, 15): what moves the legs, see ``closing``; None for slides. With servos, links are rods that begin at
   the tips of horns, and so do the axes of their joints.
 * ``limits`` (5,): shortest and longest leg, cosine of the largest angle at the base and at the platform joint, least
@@ -191,8 +191,8 @@ def segment_distance(b: Floats, v: Floats, i: int, j: int) -> float:
 def judge(
     base: Floats,
     turned: Floats,
-    sockets: Floats,
-    turned_sockets: Floats,
+    joint_axes: Floats,
+    turned_joint_axes: Floats,
     limits: Floats,
     pairs: Ints,
     legs: Floats,
@@ -204,14 +204,14 @@ def judge(
 ) -> tuple[int, float]:
     """State and nu of a pose that the legs can reach; the state names the first limit that is not met.
 
-    ``base`` and ``sockets`` (n, 3) are where the links begin and the axes of their joints there.
+    ``base`` and ``joint_axes`` (n, 3) are where the links begin and the axes of their joints there.
     """
     if limits[2] > -1.0 or limits[3] > -1.0:
         for i in range(base.shape[0]):
             low, high = 0.0, 0.0
             for c in range(3):
-                low += legs[i, c] * sockets[i, c]
-                high -= legs[i, c] * turned_sockets[i, c]
+                low += legs[i, c] * joint_axes[i, c]
+                high -= legs[i, c] * turned_joint_axes[i, c]
             if low < limits[2] * lengths[i]:
                 return BASE_ANGLE, 0.0
             if high < limits[3] * lengths[i]:
@@ -227,7 +227,7 @@ def judge(
 @inline
 def reach(
     base: Floats,
-    sockets: Floats,
+    joint_axes: Floats,
     limits: Floats,
     servos: Floats | None,
     legs: Floats,
@@ -246,7 +246,7 @@ def reach(
             if lengths[i] > limits[1]:
                 return TOO_LONG
         else:
-            state = close(i, base, servos, sockets, legs, starts, axes, lengths, divisors)
+            state = close(i, base, servos, joint_axes, legs, starts, axes, lengths, divisors)
             if state != POSITIVE:
                 return state
     return POSITIVE
@@ -259,8 +259,8 @@ def reach(
 def survey(
     base: Floats,
     turned: Floats,
-    sockets: Floats,
-    turned_sockets: Floats,
+    joint_axes: Floats,
+    turned_joint_axes: Floats,
     limits: Floats,
     servos: Floats | None,
     pairs: Ints,
@@ -279,7 +279,7 @@ def survey(
     """
     n = base.shape[0]
     legs, lengths, across, work = np.empty((n, 3)), np.empty(n), np.empty(n), np.empty((2 * n + 2, 6))
-    starts, axes, divisors = base, sockets[0], lengths
+    starts, axes, divisors = base, joint_axes[0], lengths
     if servos is not None:
         starts, axes, divisors = np.empty((n, 3)), np.empty((n, 3)), np.empty(n)
     shortest, longest = limits[0] * limits[0], limits[1] * limits[1]
@@ -310,13 +310,13 @@ def survey(
                             legs[i, 0] = xs[ix] + turned[o, i, 0] - base[i, 0]
                             legs[i, 1] = ys[iy] + turned[o, i, 1] - base[i, 1]
                             legs[i, 2] = zs[iz] + turned[o, i, 2] - base[i, 2]
-                        state = reach(base, sockets[0], limits, servos, legs, starts, axes, lengths, divisors)
+                        state = reach(base, joint_axes[0], limits, servos, legs, starts, axes, lengths, divisors)
                     if state == POSITIVE:
                         state, nu = judge(
                             starts,
                             turned[o],
                             axes,
-                            turned_sockets[o],
+                            turned_joint_axes[o],
                             limits,
                             pairs,
                             legs,
@@ -340,8 +340,8 @@ def turn(pose: Floats, points: Floats, out: Floats) -> None:
 @jit("void(f8[:,::1], f8[:,::1], f8[:,:,::1], f8[::1], f8[:,::1]?, i8[:,::1], f8[:,:,::1], f8, i8, i1[::1], f8[::1])")
 def judge_poses(
     base: Floats,
-    arms: Floats,
-    sockets: Floats,
+    platform_anchors: Floats,
+    joint_axes: Floats,
     limits: Floats,
     servos: Floats | None,
     pairs: Ints,
@@ -354,29 +354,29 @@ def judge_poses(
     """States and nu (k,) of poses (k, 4, 4)."""
     n = base.shape[0]
     legs, lengths, work = np.empty((n, 3)), np.empty(n), np.empty((2 * n + 2, 6))
-    turned, turned_sockets = np.empty((n, 3)), np.empty((n, 3))
-    starts, axes, divisors = base, sockets[0], lengths
+    turned, turned_joint_axes = np.empty((n, 3)), np.empty((n, 3))
+    starts, axes, divisors = base, joint_axes[0], lengths
     if servos is not None:
         starts, axes, divisors = np.empty((n, 3)), np.empty((n, 3)), np.empty(n)
     for k in range(poses.shape[0]):
-        turn(poses[k], arms, turned)
-        turn(poses[k], sockets[1], turned_sockets)
+        turn(poses[k], platform_anchors, turned)
+        turn(poses[k], joint_axes[1], turned_joint_axes)
         for i in range(n):
             for c in range(3):
                 legs[i, c] = poses[k, c, 3] + turned[i, c] - base[i, c]
         nus[k] = 0.0
-        states[k] = reach(base, sockets[0], limits, servos, legs, starts, axes, lengths, divisors)
+        states[k] = reach(base, joint_axes[0], limits, servos, legs, starts, axes, lengths, divisors)
         if states[k] == POSITIVE:
             states[k], nus[k] = judge(
-                starts, turned, axes, turned_sockets, limits, pairs, legs, lengths, divisors, scale, norm, work
+                starts, turned, axes, turned_joint_axes, limits, pairs, legs, lengths, divisors, scale, norm, work
             )
 
 
 @jit("void(f8[:,::1], f8[:,::1], f8[:,:,::1], f8[::1], f8[:,::1]?, i8[:,::1], f8[:,:,::1], f8[:,::1])")
 def distances(
     base: Floats,
-    arms: Floats,
-    sockets: Floats,
+    platform_anchors: Floats,
+    joint_axes: Floats,
     limits: Floats,
     servos: Floats | None,
     pairs: Ints,
@@ -386,14 +386,14 @@ def distances(
     """Distances (k, p) between the axes of pairs of links (p, 2) at poses (k, 4, 4); NaN where a rod does not reach."""
     n = base.shape[0]
     legs, lengths = np.empty((n, 3)), np.empty(n)
-    starts, axes, divisors = base, sockets[0], lengths
+    starts, axes, divisors = base, joint_axes[0], lengths
     if servos is not None:
         starts, axes, divisors = np.empty((n, 3)), np.empty((n, 3)), np.empty(n)
     for k in range(poses.shape[0]):
-        turn(poses[k], arms, legs)
+        turn(poses[k], platform_anchors, legs)
         for i in range(n):
             for c in range(3):
                 legs[i, c] += poses[k, c, 3] - base[i, c]
-        reached = reach(base, sockets[0], limits, servos, legs, starts, axes, lengths, divisors) == POSITIVE
+        reached = reach(base, joint_axes[0], limits, servos, legs, starts, axes, lengths, divisors) == POSITIVE
         for p in range(pairs.shape[0]):
             out[k, p] = segment_distance(starts, legs, pairs[p, 0], pairs[p, 1]) if reached else math.nan

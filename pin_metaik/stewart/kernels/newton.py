@@ -54,7 +54,7 @@ def rotate(pose: Floats, wx: float, wy: float, wz: float) -> None:
 @jit("void(f8[:,:,::1], f8[:,::1], f8[:,::1], f8, f8, i8, f8[:,:,::1], i8[::1], f8[::1], i1[::1])")
 def newton(
     base: Floats,
-    arms: Floats,
+    platform_anchors: Floats,
     lengths: Floats,
     scale: float,
     tolerance: float,
@@ -69,14 +69,14 @@ def newton(
     ``base`` (k, n, 3) is where the legs begin; the same for all if it is (1, n, 3).
     Lengths are dimensionless in J (rotations count ``scale`` metres a radian); steps are at most one radian long.
     """
-    n = arms.shape[0]
+    n = platform_anchors.shape[0]
     turned, J, diagonal, error, step = np.empty((n, 3)), np.empty((n, 6)), np.empty(n), np.empty(n), np.empty(6)
     for k in range(poses.shape[0]):
         pose, starts = poses[k], base[k if base.shape[0] > 1 else 0]
         states[k] = SPENT
         for iteration in range(most + 1):
             iterations[k] = iteration
-            turn(pose, arms, turned)
+            turn(pose, platform_anchors, turned)
             errors[k] = 0.0
             for i in range(n):
                 x = pose[0, 3] + turned[i, 0] - starts[i, 0]

@@ -99,8 +99,8 @@ def newton(geometry: Geometry, q: Array, T: Array) -> Forward:
     starts, d = np.array(held, order="C"), np.array(rods, order="C")  # writable, as the loop wants them
     iterations, errors, states = np.zeros(len(q), dtype=np.int64), np.zeros(len(q)), np.zeros(len(q), dtype=np.int8)
     tolerance = TOLERANCE * float(d.max(initial=0.0))
-    arms, scale = geometry.arrays[1], geometry.platform_radius
-    load_newton().newton(starts, arms, d, scale, tolerance, ITERATIONS, T, iterations, errors, states)
+    platform_anchors, scale = geometry.arrays[1], geometry.platform_radius
+    load_newton().newton(starts, platform_anchors, d, scale, tolerance, ITERATIONS, T, iterations, errors, states)
     return Forward(T, states, errors, iterations)
 
 

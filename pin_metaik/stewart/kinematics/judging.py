@@ -23,8 +23,8 @@ class Arguments(NamedTuple):
     """A platform and its limits as the compiled loops take them; see ``kernels.judging``."""
 
     base: Array
-    arms: Array
-    sockets: Array
+    platform_anchors: Array
+    joint_axes: Array
     limits: Array
     servos: Array | None
     pairs: NDArray[np.int64]
@@ -36,11 +36,11 @@ def arguments_of(geometry: Geometry, limits: Limits | None) -> Arguments:
     Raises:
         InvalidGeometry: Limits of another kind of legs, or a home that gives a joint no axis.
     """
-    base, arms, pairs = geometry.arrays
+    base, platform_anchors, pairs = geometry.arrays
     servos = _servo_rows(geometry, limits)
     if limits is None:
-        return Arguments(base, arms, np.zeros((2, geometry.n, 3)), np.array(UNLIMITED), servos, pairs)
-    return Arguments(base, arms, limits.sockets(geometry), _limits_row(geometry, limits), servos, pairs)
+        return Arguments(base, platform_anchors, np.zeros((2, geometry.n, 3)), np.array(UNLIMITED), servos, pairs)
+    return Arguments(base, platform_anchors, limits.joint_axes(geometry), _limits_row(geometry, limits), servos, pairs)
 
 
 def judged(

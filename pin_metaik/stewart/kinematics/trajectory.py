@@ -1,4 +1,4 @@
-"""Poses over time, and what the legs do along them: lengths, rates, limits, conditioning."""
+"""Poses over time, and the legs along them: lengths, rates, limits, conditioning."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def between(first: Array, last: Array, share: float) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """What the legs do along a trajectory.
+    """The legs along a trajectory.
 
     Attributes:
         geometry: The platform.
@@ -183,7 +183,7 @@ def follow(
     Args:
         geometry: The platform.
         trajectory: The way.
-        limits: What the legs allow; without them every pose is allowed.
+        limits: Limits of the legs; without them every pose is allowed.
         dexterity: How to measure nu.
     """
     T = trajectory.poses

@@ -1,1 +1,1 @@
-"""A mechanism with everything that is asked about it: what a file keeps."""
+"""A mechanism with its limits and design task, as a file keeps it."""

@@ -26,12 +26,12 @@ class Mechanism:
     Attributes:
         name: Its name.
         geometry: Joints and legs.
-        limits: What the legs allow: ``LegLimits`` for slides, ``ServoLimits`` for servos.
+        limits: Limits of the legs: ``LegLimits`` for slides, ``ServoLimits`` for servos.
         grid: Where its workspace is looked for.
         dexterity: How its dexterity is measured.
         task: How it is designed; None for a mechanism that is only analysed.
         unit: The unit of length its file is written in: m, cm or mm. Everything here is in m.
-        description: What it is.
+        description: A sentence on it.
         source: Where it is from.
 
     Raises:

@@ -1,4 +1,4 @@
-"""What a design may change: every length and angle is fixed, or free within a range."""
+"""Ranges of a design: every length and angle is fixed, or free within a range."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ class Variables:
 
     @classmethod
     def of(cls, ranges: Ranges, geometry: Geometry, limits: Limits) -> Variables:
-        """The variables of these ranges; what they leave out is fixed as it is.
+        """The variables of these ranges; dimensions left out keep their values.
 
         Raises:
             InvalidBounds: Angles or points for more or fewer joints than there are, both for one side, dimensions that

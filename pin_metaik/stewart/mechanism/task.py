@@ -1,4 +1,4 @@
-"""What a good platform is, and how long to look for one: the settings of a design."""
+"""The settings of a design: weights of the fitness, and the budget of the search."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class DesignTask:
         algorithm: A metaheuristic's name or object; the default is the paper's swarm of 60.
         evaluations: How many designs to look at; the default is the paper's 60 generations of 60.
         seed: Of every random choice.
-        from_current: Whether the search starts from the mechanism as it is, as well as from random designs.
+        from_current: Whether the search starts from the current mechanism, as well as from random designs.
 
     Raises:
         InvalidSetting: A weight below zero, both zero, or another setting outside its range.

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Coordinate(NamedTuple):
-    """How the coordinates of legs are shown to people: what they are called, in which unit, and how much that is."""
+    """How coordinates of legs are shown: their name, their unit, and its factor."""
 
     word: str
     unit: str

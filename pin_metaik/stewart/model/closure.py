@@ -29,7 +29,7 @@ class ClosedModel:
     """A mechanism in Pinocchio.
 
     Attributes:
-        mechanism: What it was made from.
+        mechanism: The mechanism that it models.
         model: The tree: a free-flyer for the platform (7 of q, 6 of v), then three joints a leg.
         closures: One a leg: its end on the platform, 3 equations each.
     """
@@ -113,7 +113,7 @@ class ClosedModel:
 
         Raises:
             InvalidConfiguration: Not n finite coordinates.
-            InvalidTarget: The start is none, or one that a rod does not reach.
+            InvalidTarget: The start is no pose, or one that a rod does not reach.
         """
         held = array(f"{self.mechanism.coordinate.word}s", coordinates, len(self.actuators), error=InvalidConfiguration)
         q = self.configuration(start)

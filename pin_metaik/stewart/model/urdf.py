@@ -94,7 +94,18 @@ def _servo(robot: ET.Element, i: int, geometry: Geometry, limits: ServoLimits, t
     _cylinder(arm, thickness / 2, horn, middle, "grey", along_x)
     b, turn = geometry.b[i - 1].tolist(), pin.rpy.matrixToRpy(servos.frames[i - 1].T).tolist()
     speed = limits.speed or VELOCITY
-    _joint(robot, f"leg_{i}_servo", "revolute", "base_link", f"leg_{i}_horn", b, "0 0 1", limits.span, turn, speed)
+    _joint(
+        robot,
+        f"leg_{i}_servo",
+        "revolute",
+        "base_link",
+        f"leg_{i}_horn",
+        b,
+        "0 0 1",
+        limits.span,
+        turn=turn,
+        speed=speed,
+    )
     knuckle = ET.SubElement(robot, "link", name=f"leg_{i}_knuckle")
     _inertial(knuckle, thickness / 2, thickness / 2)
     tip = (horn, 0.0, 0.0)
@@ -126,6 +137,7 @@ def _joint(
     origin: Sequence[float] | None = None,
     axis: str = "",
     ends: tuple[float, float] = (0.0, 0.0),
+    *,
     turn: Sequence[float] = (),
     speed: float = VELOCITY,
 ) -> None:

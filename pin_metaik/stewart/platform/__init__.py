@@ -1,1 +1,1 @@
-"""What a platform is: its joints, its legs and what they allow, and the poses it is asked about."""
+"""A platform: its joints, its legs and their limits, and its poses."""

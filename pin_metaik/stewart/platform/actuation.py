@@ -1,4 +1,4 @@
-"""How the legs of a platform are actuated: what the protocol of a leg is, and legs that are slides.
+"""How the legs of a platform are actuated: the protocol of a leg, and legs that are slides.
 
 Every leg ends in a straight link between two joints. The link of a slide begins in the base joint and changes its
 length; that of a servo is a rod of fixed length, which begins at the tip of a horn. Whatever is said about a platform
@@ -41,7 +41,7 @@ class Links:
         pushes: How fast the actuator moves the platform joint along the link (k, n): 1 for a slide; for a servo, in
             m/rad, its horn times the transmission, below zero where it pulls. NaN where the leg cannot reach.
         transmission: How square each link is to what moves it, 0 ... 1 (k, n), likewise; 1 for a slide.
-        missing: What a link is too short by, m (k, n); below zero what it is too long by; 0 where it reaches.
+        missing: Missing length of a link, m (k, n); below zero if it is too long; 0 where it reaches.
     """
 
     coordinates: Array

@@ -48,7 +48,7 @@ class Geometry:
             circle if not given.
         base: The joints B1, B2 ... as points x, y, z, at any heights; None: they are on a circle.
         platform: The joints M1, M2 ... likewise, in the platform's frame.
-        servos: What moves the legs, if they are not slides: a servo for each, whose shaft stands in its base joint.
+        servos: A servo for each leg, with its shaft in the base joint; None: the legs are slides.
 
     Raises:
         InvalidGeometry: A radius that is not above zero, angles out of order, joints in one place, a leg to a joint
@@ -115,7 +115,7 @@ class Geometry:
 
     @cached_property
     def actuation(self) -> Actuation:
-        """What the legs are: slides, or rods moved by servos."""
+        """Kind of the legs: slides, or rods moved by servos."""
         return SLIDES if self.servos is None else ServoLegs(self.servos)
 
     @property
@@ -253,7 +253,7 @@ def _numbers(name: str, values: Any) -> tuple[float, ...]:
 
 
 def _side(geometry: Geometry, side: str, letter: str) -> dict[str, Any]:
-    """What the fields of one side become: a circle as it is given, or points and how far apart they are."""
+    """The joints of one side: a circle as given, or points and their distances."""
     radius, angles = f"{side}_radius", f"{side}_angles"
     joints = getattr(geometry, side)
     reference = _numbers("reference", geometry.reference)

@@ -1,4 +1,4 @@
-"""What the legs allow: how far they move, the angles of their joints, and the distance they keep from each other."""
+"""Limits of the legs: their travel, the angles of their joints, and their distance from each other."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class JointLimits:
         return min(self.base_angle, self.platform_angle) < pi or self.distance > 0.0
 
     @checked
-    def sockets(self, geometry: Geometry) -> Array:
+    def joint_axes(self, geometry: Geometry) -> Array:
         """Unit axes (2, n, 3) of the joints that begin links and of the platform joints (platform frame).
 
         The first are in the base frame; those at the tip of a horn along the horn, the way it moves, and its axis.
@@ -87,7 +87,7 @@ class LegLimits(JointLimits):
         distance: Least distance between the axes of two legs (their diameter and what clearance they need). Legs that
             share a joint are not compared.
         home: Position of P, with the platform level, at which the axes of all joints point along their legs. Without
-            it they stand square on their plates, towards the other plate.
+            it the axes are normal to the base and to the platform, each towards the other.
         dead_length: What a leg is longer than its stroke when it is retracted (its ends, nut and motor), so that
             ``longest <= 2 shortest - dead_length``. None: it is not looked at, as for legs of several stages.
         speed: How fast a leg can change its length, m/s; None: that is not looked at.
@@ -152,12 +152,12 @@ class ServoLimits(JointLimits):
         distance: Least distance between the axes of two rods; horns are not looked at. Legs that share a joint are not
             compared.
         home: Position of P, with the platform level, at which the axes of all joints point along their rods. Without
-            it those of the horns point square to them, the way they move (on branch -1 the other way), and the others
-            square to the platform. The joint at a horn turns with it.
+            it the axes at the horns are normal to them, in the direction in which they move (on branch -1 the opposite
+            one), and those at the platform are normal to it. The joint at a horn turns with the horn.
         speed: How fast a servo can turn, rad/s; None: that is not looked at.
 
     Raises:
-        InvalidGeometry: Angles that are none or in the wrong order, or a limit out of its range.
+        InvalidGeometry: Angles that are no numbers or in the wrong order, or a limit out of its range.
     """
 
     lowest: float

@@ -59,7 +59,7 @@ def one_pose(pose: PoseLike) -> Array:
     """One pose (4, 4), or the first of many.
 
     Raises:
-        InvalidTarget: It is none, or there is none.
+        InvalidTarget: A pose is malformed, or the list is empty.
     """
     poses = as_poses(pose)
     if not len(poses):

@@ -1,4 +1,4 @@
-"""Servos that move legs (6-RSS): horns on shafts whose axes are anywhere, and rods of fixed length."""
+"""Servos that move legs (6-RSS): horns on shafts with any axes, and rods of fixed length."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a pose is to a platform and its limits."""
+"""States of a pose: reached, or forbidden by a limit."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class PoseState(IntEnum):
-    """What a pose is to a platform: reached, or the first limit that forbids it.
+    """State of a pose: reached, or the first limit that forbids it.
 
     They are looked at in this order, but for the angles of servos: a rod that reaches has one, which comes next.
     """

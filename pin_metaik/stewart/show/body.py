@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pin_metaik.arrays import Array
 from pin_metaik.stewart.workspace.workspace import Workspace
 
-MOST_CELLS = 60  # along each axis; more than that nobody sees
+MOST_CELLS = 60  # along each axis; more make no visible difference
 LIGHT = {(0, 1): 0.88, (0, -1): 0.8, (1, 1): 0.72, (1, -1): 0.94, (2, 1): 1.0, (2, -1): 0.62}
 """How bright the faces of cells are, by their axis and side: lit from above and in front."""
 THIN = 0.02  # half the thickness of a layer one cell thick, as a share of the largest extent
@@ -27,7 +27,7 @@ class Body:
         nu: Of each cell, the mean over the poses reached in it (a, b, c).
         centres: Of the cells along each axis, as they are shown.
         labels: Of the axes.
-        title: What it is.
+        title: Title of the picture.
     """
 
     inside: NDArray[np.bool_]

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 @checked
 def draw_motion(motion: Motion, mechanism: Mechanism) -> Figure:
-    """What the legs do along a trajectory: their coordinates and rates over time with their limits, and dexterity.
+    """The legs along a trajectory: coordinates and rates over time with their limits, and dexterity.
 
     Args:
         motion: What ``follow`` found.
-        mechanism: Whose legs they are, for its limits and its unit.
+        mechanism: The mechanism, for its limits and its unit.
 
     Raises:
         MissingExtra: matplotlib is not installed.

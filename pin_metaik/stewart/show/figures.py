@@ -32,7 +32,7 @@ def picture_file(path: str | Path) -> Path:
 
     Raises:
         MissingExtra: matplotlib is not installed.
-        InvalidSetting: Its ending is none of a picture.
+        InvalidSetting: Its ending is not one of a picture.
         CannotWrite: It cannot be written.
     """
     need_plots()
@@ -46,7 +46,7 @@ def save_picture(figure: Figure, path: str | Path) -> Path:
     """Write a figure to a file; the ending says the format (.png, .svg, .pdf).
 
     Raises:
-        InvalidSetting: Its ending is none of a picture.
+        InvalidSetting: Its ending is not one of a picture.
         CannotWrite: It cannot be written.
     """
     need_figure(figure)

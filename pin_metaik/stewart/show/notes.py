@@ -1,4 +1,4 @@
-"""What a reader of the figures about a mechanism should know before believing them."""
+"""Remarks on the figures of a mechanism: where they are uncertain, and why."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def in_unit(mechanism: Mechanism, lengths: ArrayLike) -> str:
 
 
 def notes(mechanism: Mechanism, workspace: Workspace | None = None) -> list[str]:
-    """What a reader of the figures should know before believing them."""
+    """Remarks on the figures: where they are uncertain, and why."""
     geometry, limits = mechanism.geometry, mechanism.limits
     said = []
     if geometry.n < MOST_LEGS:

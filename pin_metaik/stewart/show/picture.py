@@ -194,7 +194,7 @@ def _beside(joints: Array, aside: float) -> Array:
 
 
 def _halo() -> list[Any]:
-    """A white edge round letters, so that what is behind them does not hide them."""
+    """A white edge round letters, so that the drawing behind does not hide them."""
     effects = import_module("matplotlib.patheffects")
     return [effects.withStroke(linewidth=2.5, foreground="white")]
 

@@ -167,7 +167,7 @@ def pose_words(mechanism: Mechanism, pose: PoseLike) -> str:
 
 
 def outcome(designed: Designed) -> Lines:
-    """What a design ended with."""
+    """The lines about a design."""
     lines = [("ended", designed.search.status.value), ("designs looked at", str(designed.search.evaluations))]
     lines.append(("time", f"{designed.search.seconds:.3g} s"))
     if designed.score is None:

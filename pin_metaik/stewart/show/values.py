@@ -37,7 +37,7 @@ def values(mechanism: Mechanism, workspace: Workspace) -> dict[str, Any]:
 
 
 def pose_values(mechanism: Mechanism, pose: PoseLike) -> dict[str, Any]:
-    """One pose as plain values in m and rad: its legs, what it is to the limits, its dexterity and Jacobian."""
+    """One pose as plain values in m and rad: its legs, its state, its dexterity and Jacobian."""
     geometry = mechanism.geometry
     T = as_poses(pose)
     state = PoseState(int(judge_poses(geometry, mechanism.limits, T)[0]))

@@ -19,7 +19,7 @@ from pin_metaik.watching import Watch
 
 @dataclass(frozen=True, eq=False)
 class Designed:
-    """What a design ended with.
+    """The result of a design.
 
     Attributes:
         mechanism: The best mechanism found, with the settings it was found with. If none was feasible, the one given.
@@ -63,7 +63,7 @@ class Designed:
 class _Measured:
     """A fitness that measures whatever would be the best design again, by more cells, before it may be.
 
-    A coarse grid flatters some designs, and a search finds these. So the best is only ever what a fine one says.
+    A coarse grid flatters some designs, and a search finds these. So the best is chosen by a fine grid.
     """
 
     def __init__(self, fitness: Fitness) -> None:
@@ -117,7 +117,7 @@ def design(
 
 
 def _designed(mechanism: Mechanism, fitness: Fitness, found: Result) -> Designed:
-    """What a search has found, with the score of its best design."""
+    """The result of a search, with the score of its best design."""
     if found.cost >= UNUSABLE:
         return Designed(mechanism, None, found)
     geometry, limits = fitness.build(fitness.variables.dimensions(found.x))

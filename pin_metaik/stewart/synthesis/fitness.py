@@ -34,7 +34,7 @@ class Score:
     """How good a workspace is.
 
     Attributes:
-        fitness: The weighted sum; what is maximised.
+        fitness: The weighted sum, which is maximised.
         dexterity: D, 0 ... 1.
         workspace: V / cube^3.
     """

@@ -1,4 +1,4 @@
-"""A grid with its ranges settled: the poses to look at, within the box of what a platform's limits leave."""
+"""A grid with its ranges settled: the poses to judge, within the box that a platform's limits leave."""
 
 from __future__ import annotations
 
@@ -98,17 +98,17 @@ def room(grid: Grid, geometry: Geometry, limits: Limits) -> Array | None:
     turned = np.ascontiguousarray(geometry.m @ R.transpose(0, 2, 1))  # (o, n, 3)
     spheres = geometry.b - turned
     bounds, box = load_bounds(), np.empty((2, 3))
-    base, _, sockets, most, servos, pairs = arguments_of(geometry, limits)
+    base, _, joint_axes, most, servos, pairs = arguments_of(geometry, limits)
     bounds.reach(spheres, most, _ends(grid, spheres), box)
     if (box[0] > box[1]).any():
         return None
     if not limits.beyond_lengths:
         return box
-    turned_sockets = np.ascontiguousarray(sockets[1] @ R.transpose(0, 2, 1))
+    turned_joint_axes = np.ascontiguousarray(joint_axes[1] @ R.transpose(0, 2, 1))
     counts = np.full(3, COVER)
     while True:
         part = np.empty((2, 3))
-        if not bounds.cover(base, turned, sockets, turned_sockets, most, servos, pairs, box, counts, part):
+        if not bounds.cover(base, turned, joint_axes, turned_joint_axes, most, servos, pairs, box, counts, part):
             return None
         if (np.ptp(part, axis=0) >= SHRINKS * np.ptp(box, axis=0)).all():
             return part

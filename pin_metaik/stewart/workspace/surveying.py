@@ -1,4 +1,4 @@
-"""Judging the poses of a grid, slab by slab, and of finer ones until enough cells carry what is said of a workspace."""
+"""Judging the poses of a grid, slab by slab, and of finer grids until enough cells carry the figures of a workspace."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def survey(
         limits: What its legs allow.
         grid: Where to look; default: as far as the limits leave room, level, in 40 x 40 x 40 cells.
         dexterity: How to measure nu.
-        watch: Called with cells done and in all as it goes; True ends it, and ``complete`` is False.
+        watch: Called with cells done and in all; True ends the survey, and ``complete`` is False.
 
     Raises:
         EmptyWorkspace: No pose of the grid is within the limits; it says whether that is proved for all between them.
@@ -148,9 +148,9 @@ def judge_cells(
     """Fill in states and nu (nx, ny, nz, o), slab by slab along x."""
     kernels = load_judging()
     R = cells.rotations  # (o, 3, 3)
-    base, _, sockets, most, servos, pairs = arguments_of(geometry, limits)
+    base, _, joint_axes, most, servos, pairs = arguments_of(geometry, limits)
     turned = np.ascontiguousarray(geometry.m @ R.transpose(0, 2, 1))  # (o, n, 3)
-    turned_sockets = np.ascontiguousarray(sockets[1] @ R.transpose(0, 2, 1))
+    turned_joint_axes = np.ascontiguousarray(joint_axes[1] @ R.transpose(0, 2, 1))
     nx, *slab = cells.shape
     thickness = max(1, CHUNK // int(np.prod(slab)))
     for first in range(0, nx, thickness):
@@ -158,8 +158,8 @@ def judge_cells(
         kernels.survey(
             base,
             turned,
-            sockets,
-            turned_sockets,
+            joint_axes,
+            turned_joint_axes,
             most,
             servos,
             pairs,

@@ -38,7 +38,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("comparison")
     methods = ("lm+restarts", "dls+restarts", "gwo", "mtde@60+dls", "default", JUMPING)
     compare(
-        Suite(("ur5",), ("near_limit", "path"), methods, targets=8, budget=300), out, command="pin-metaik <&> compare"
+        Suite(("ur5",), ("near_limit", "path"), methods, tasks=8, budget=300), out, command="pin-metaik <&> compare"
     )
     write_report(out)
     return out

@@ -216,34 +216,19 @@ def test_the_tables_that_are_not_needed_can_be_left_out(write):
     assert (short.grid, short.dexterity, short.task) == (Grid(), Dexterity(), None)
 
 
+# fmt: off
 WRONG = {
-    "an unknown key": (
-        'name = "octahedron"',
-        'name = "octahedron"\ncolour = "red"',
-        InvalidTable,
-        "unknown key 'colour'",
-    ),
-    "a misspelt key": (
-        "radius = 200",
-        "radus = 200",
-        InvalidTable,
-        r"base: unknown key 'radus'; did you mean 'radius'\?",
-    ),
+    "an unknown key":
+        ('name = "octahedron"', 'name = "octahedron"\ncolour = "red"', InvalidTable, "unknown key 'colour'"),
+    "a misspelt key":
+        ("radius = 200", "radus = 200", InvalidTable, r"base: unknown key 'radus'; did you mean 'radius'\?"),
     "a misspelt table": ("[workspace]", "[workspac]", InvalidTable, "unknown key 'workspac'; did you mean 'workspace'"),
     "a misspelt limit": ("distance = 20", "distence = 20", InvalidTable, "legs: unknown key 'distence'; did you mean"),
-    "a misspelt range": (
-        "longest = [340, 360]",
-        "longst = [340, 360]",
-        InvalidTable,
-        "design.ranges: unknown key 'longst'",
-    ),
+    "a misspelt range":
+        ("longest = [340, 360]", "longst = [340, 360]", InvalidTable, "design.ranges: unknown key 'longst'"),
     "a misspelt setting": ("agents = 30", "agent = 30", InvalidTable, "design.settings: unknown key 'agent'; did you"),
-    "a misspelt step": (
-        "counts = [14, 14, 14]",
-        "count = [14, 14, 14]",
-        InvalidTable,
-        "design.workspace: unknown key 'count'",
-    ),
+    "a misspelt step":
+        ("counts = [14, 14, 14]", "count = [14, 14, 14]", InvalidTable, "design.workspace: unknown key 'count'"),
     "a misspelt norm key": ('norm = "two"', 'nrom = "two"', InvalidTable, "dexterity: unknown key 'nrom'"),
     "no name": ('name = "octahedron"', "", InvalidTable, "name is missing"),
     "no unit": ('length = "mm"', "", InvalidTable, "length is missing"),
@@ -255,74 +240,39 @@ WRONG = {
     "an unknown length": ("length = 120", 'length = "rb"', InvalidSetting, "length is 'rm', 'best' or"),
     "an unknown algorithm": ('"qpso"', '"qqpso"', UnknownName, "no metaheuristic named 'qqpso'; did you mean 'qpso'"),
     "an unknown index": ('"lci"', '"lcd"', InvalidSetting, "index must be one of"),
-    "text for a number": (
-        "radius = 200",
-        'radius = "200"',
-        InvalidTable,
-        "base: radius = '200': '200' is not a number",
-    ),
+    "text for a number":
+        ("radius = 200", 'radius = "200"', InvalidTable, "base: radius = '200': '200' is not a number"),
     "true for a number": ("radius = 200", "radius = true", InvalidTable, "true is not a number"),
     "nan for a number": ("radius = 200", "radius = nan", InvalidTable, "nan is not finite"),
     "a number for a list": ("angles = [0, 120, 240]", "angles = 3", InvalidTable, "angles = 3 is not a list"),
     "a list for a table": ("[dexterity]\n", "[[dexterity]]\n", InvalidTable, "dexterity = .* is not a table"),
-    "half a count": (
-        "counts = [20, 20, 20]",
-        "counts = [20.5, 20, 20]",
-        InvalidTable,
-        "counts = .* list of whole numbers",
-    ),
+    "half a count":
+        ("counts = [20, 20, 20]", "counts = [20.5, 20, 20]", InvalidTable, "counts = .* list of whole numbers"),
     "too few counts": ("counts = [20, 20, 20]", "counts = [20, 20]", InvalidTable, "is not a list of 3 numbers"),
-    "half an evaluation": (
-        "evaluations = 600",
-        "evaluations = 6.5",
-        InvalidTable,
-        "evaluations = 6.5 is not a whole number",
-    ),
+    "half an evaluation":
+        ("evaluations = 600", "evaluations = 6.5", InvalidTable, "evaluations = 6.5 is not a whole number"),
     "a flag that is none": ("from_current = true", "from_current = 1", InvalidTable, "is neither true nor false"),
     "a range of three": ("[42, 315]", "[42, 315, 400]", InvalidTable, "neither a number nor a range of two"),
-    "a crossed range": (
-        "[42, 315]",
-        "[315, 42]",
-        InvalidBounds,
-        "platform.toml: the range of base_radius is two finite",
-    ),
+    "a crossed range":
+        ("[42, 315]", "[315, 42]", InvalidBounds, "platform.toml: the range of base_radius is two finite"),
     "a radius of zero": ("radius = 200", "radius = 0", InvalidGeometry, "platform.toml: base_radius is above zero"),
-    "legs the wrong way": (
-        "shortest = 250",
-        "shortest = 400",
-        InvalidGeometry,
-        "0.4 m, is longer than the longest, 0.35 m",
-    ),
-    "angles out of order": (
-        "[60, 180, 300]",
-        "[180, 60, 300]",
-        InvalidGeometry,
-        "M2 at 60 deg does not come after M1 at 180",
-    ),
-    "a joint that does not exist": (
-        "[3, 1, 1, 2, 2, 3]",
-        "[3, 1, 1, 2, 2, 4]",
-        InvalidGeometry,
-        "leg 6 is joined to M4, which",
-    ),
-    "more ends than others": (
-        "[1, 1, 2, 2, 3, 3]",
-        "[1, 1, 2, 2, 3]",
-        InvalidTable,
-        "base names 5 joints and platform 6",
-    ),
+    "legs the wrong way":
+        ("shortest = 250", "shortest = 400", InvalidGeometry, "0.4 m, is longer than the longest, 0.35 m"),
+    "angles out of order":
+        ("[60, 180, 300]", "[180, 60, 300]", InvalidGeometry, "M2 at 60 deg does not come after M1 at 180"),
+    "a joint that does not exist":
+        ("[3, 1, 1, 2, 2, 3]", "[3, 1, 1, 2, 2, 4]", InvalidGeometry, "leg 6 is joined to M4, which"),
+    "more ends than others":
+        ("[1, 1, 2, 2, 3, 3]", "[1, 1, 2, 2, 3]", InvalidTable, "base names 5 joints and platform 6"),
     "a bad setting": ("agents = 30", "agents = 0", InvalidSetting, "design.settings: agents must be a whole number"),
-    "a setting of the wrong kind": (
-        "agents = 30",
-        'agents = "many"',
-        InvalidSetting,
-        "design.settings: agents must be",
-    ),
+    "a setting of the wrong kind":
+        ("agents = 30", 'agents = "many"', InvalidSetting, "design.settings: agents must be"),
     "settings of nothing": ('algorithm = "qpso"\n', "", InvalidTable, "name it, e.g. algorithm = 'pso'"),
     "an empty name": ('"octahedron"', '" "', InvalidSetting, "a mechanism has a name"),
     "a name that is no text": ('"octahedron"', "3", InvalidTable, "name = 3 is not text"),
     "a broken line": ("radius = 200", "radius = ", InvalidTable, "is not TOML"),
 }
+# fmt: on
 
 
 @pytest.mark.parametrize("what", WRONG)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from pin_metaik.arrays import Array
-from pin_metaik.compare.method import Answer
+from pin_metaik.compare.methods.method import Answer
 from pin_metaik.compare.methods.peers.peer import TOLERANCE, Peer, Solve
 from pin_metaik.compare.methods.peers.serial_arm import BASE, SerialArm
 

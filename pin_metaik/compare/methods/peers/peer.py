@@ -1,4 +1,4 @@
-"""Somebody else's solver as a method: it is given a serial arm, poses and starts, and the same budget."""
+"""Another library's solver as a method: it is given a serial arm, poses and starts, and the same budget."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TypeAlias
 import numpy as np
 
 from pin_metaik.arrays import Array
-from pin_metaik.compare.method import Answer
+from pin_metaik.compare.methods.method import Answer
 from pin_metaik.compare.methods.peers.serial_arm import SerialArm
 from pin_metaik.ik import IKProblem
 from pin_metaik.kinematics import Chain
@@ -27,7 +27,7 @@ class Peer:
     """A solver of another package.
 
     Attributes:
-        name: What it is called.
+        name: Name in tables.
         module: What must be importable.
         extra: The extra of this package that brings it.
         load: The solver for an arm. Called once for each arm, and not timed.
@@ -59,4 +59,4 @@ class Peer:
 @lru_cache(maxsize=16)
 def _loaded(peer: Peer, chain: Chain) -> Solve:
     peer.need()
-    return peer.load(SerialArm.of(chain.model.name, chain))
+    return peer.load(SerialArm.of_chain(chain.model.name, chain))

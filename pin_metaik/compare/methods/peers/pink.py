@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from pin_metaik.arrays import Array
-from pin_metaik.compare.cost import price_of, steps_within
-from pin_metaik.compare.method import Answer
+from pin_metaik.compare.methods.cost import evaluations_of, steps_within
+from pin_metaik.compare.methods.method import Answer
 from pin_metaik.compare.methods.peers.peer import TOLERANCE, Peer, Solve
 from pin_metaik.compare.methods.peers.serial_arm import TIP, SerialArm
 
@@ -37,9 +37,9 @@ def load(arm: SerialArm) -> Solve:
                 if distance + angle < best:
                     best, nearest = distance + angle, arm.x(configuration.q)
                 if distance <= TOLERANCE and angle <= TOLERANCE:
-                    return Answer(arm.x(configuration.q), True, price_of(steps))
+                    return Answer(arm.x(configuration.q), True, evaluations_of(steps))
                 if steps >= allowed:
-                    return Answer(nearest, False, price_of(steps))
+                    return Answer(nearest, False, evaluations_of(steps))
                 least, idle = (distance + angle, 0) if distance + angle < PROGRESS * least else (least, idle + 1)
                 steps += 1
                 try:

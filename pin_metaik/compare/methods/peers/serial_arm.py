@@ -42,8 +42,8 @@ class SerialArm:
     upper: NDArray[np.float64]
 
     @classmethod
-    def of(cls, robot: str, chain: Chain) -> SerialArm:
-        """The arm of a chain with one frame whose joints move one coordinate each."""
+    def of_chain(cls, robot: str, chain: Chain) -> SerialArm:
+        """The arm of a chain with one frame, in which every joint has a coordinate of its own."""
         paths = chain.paths
         if len(chain.frames) != 1 or len(paths.joints) != chain.n or (paths.joints[:, 12:] != (1.0, 0.0)).any():
             raise ValueError(f"{chain} is not a serial arm: it branches, or a joint mimics another")

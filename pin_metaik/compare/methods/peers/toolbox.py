@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from pin_metaik.arrays import Array
-from pin_metaik.compare.cost import price_of, steps_within
-from pin_metaik.compare.method import Answer
+from pin_metaik.compare.methods.cost import evaluations_of, steps_within
+from pin_metaik.compare.methods.method import Answer
 from pin_metaik.compare.methods.peers.peer import TOLERANCE, Peer, Solve
 from pin_metaik.compare.methods.peers.serial_arm import SerialArm
 
@@ -39,9 +39,9 @@ def load(arm: SerialArm) -> Solve:
             )
             spent += max(1, int(found.iterations))
             if found.success:
-                return Answer(np.asarray(found.q, dtype=float), True, price_of(spent))
+                return Answer(np.asarray(found.q, dtype=float), True, evaluations_of(spent))
             x = rng.uniform(arm.lower, arm.upper)
-        return Answer(x0, False, price_of(spent))
+        return Answer(x0, False, evaluations_of(spent))
 
     return solve
 

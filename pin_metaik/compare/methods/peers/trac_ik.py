@@ -6,7 +6,7 @@ import numpy as np
 import pinocchio as pin
 
 from pin_metaik.arrays import Array
-from pin_metaik.compare.method import Answer
+from pin_metaik.compare.methods.method import Answer
 from pin_metaik.compare.methods.peers.peer import TOLERANCE, Peer, Solve
 from pin_metaik.compare.methods.peers.serial_arm import BASE, TIP, SerialArm
 

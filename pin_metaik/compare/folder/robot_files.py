@@ -1,4 +1,4 @@
-"""Robots of one's own travel with a comparison: their files are kept in its folder, to be run again anywhere."""
+"""Copies of the files of users' own robots in the folder of a comparison, so that it can be run again anywhere."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 import shutil
 from pathlib import Path
 
-from pin_metaik.compare.suite import Suite
+from pin_metaik.compare.trials.suite import Suite
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.robots import Robot, load_robot
 from pin_metaik.robots.library import catalogue, example_robots
@@ -16,12 +16,12 @@ ROBOTS = "robots"
 MESH = re.compile(r"""<mesh\b[^>]*\bfilename\s*=\s*["']([^"']+)["']""")
 
 
-def pack(folder: Path, suite: Suite) -> dict[str, str]:
+def copy_robots(folder: Path, suite: Suite) -> dict[str, str]:
     """Keep the files of the robots that do not come by name.
 
     Args:
         folder: Of the comparison.
-        suite: What is compared; meshes are kept, too, if a case of it has a world.
+        suite: The comparison; meshes are copied, too, if one of its cases has a world.
 
     Returns:
         Paths in the folder by the robots' names.
@@ -29,9 +29,9 @@ def pack(folder: Path, suite: Suite) -> dict[str, str]:
     Raises:
         InvalidSetting: The folder has rows of another robot of that name.
     """
-    worlds = any(case.world is not None for case in suite.tasks.values())
-    packed = {}
-    for number, (name, spec) in enumerate(suite.arms.items()):
+    worlds = any(case.world is not None for case in suite.cases_by_name.values())
+    copied = {}
+    for number, (name, spec) in enumerate(suite.robots_by_name.items()):
         if spec in catalogue() or spec in example_robots():
             continue
         robot = load_robot(spec)
@@ -44,12 +44,12 @@ def pack(folder: Path, suite: Suite) -> dict[str, str]:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content)
         if worlds:
-            _pack_meshes(robot, path.parent)
-        packed[name] = path.relative_to(folder).as_posix()
-    return packed
+            _copy_meshes(robot, path.parent)
+        copied[name] = path.relative_to(folder).as_posix()
+    return copied
 
 
-def _pack_meshes(robot: Robot, folder: Path) -> None:
+def _copy_meshes(robot: Robot, folder: Path) -> None:
     """Keep the meshes of the collision geometry where the robot's file, in the same folder, says that they are.
 
     A mesh with an absolute path is not kept, nor one far above the robot's file.

@@ -1,4 +1,4 @@
-"""What is compared: robots, cases and methods, how many targets and seeds, and the budget of each trial."""
+"""A comparison: robots, cases and methods, how many tasks and seeds, and the budget of each target."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from pin_metaik.arguments import checked
-from pin_metaik.compare.case import Case
-from pin_metaik.compare.lookup import case_of, method_of
-from pin_metaik.compare.method import Method
+from pin_metaik.compare.cases.case import Case
+from pin_metaik.compare.methods.method import Method
 from pin_metaik.compare.methods.peers import Peer
-from pin_metaik.compare.trial import generator
-from pin_metaik.compare.unit import Unit
+from pin_metaik.compare.trials.lookup import case_of, method_of
+from pin_metaik.compare.trials.trial import generator
+from pin_metaik.compare.trials.work_item import WorkItem
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.robots import load_robot
 
@@ -24,13 +24,16 @@ class Suite:
     """A comparison.
 
     Attributes:
-        robots: What ``load_robot`` takes.
+        robots: Names or paths, as ``load_robot`` takes them.
         cases: Names, ``"module:object"``, or cases themselves.
         methods: Names, ``"module:object"``, or methods themselves.
-        targets: Tasks of each case for each robot.
+        tasks: Tasks of each case for each robot.
         seeds: Repetitions of each method on each task.
         budget: Kernel evaluations for each target.
         rng: Seed of everything random.
+        robots_by_name: The same, by the robots' names.
+        cases_by_name: The cases by name.
+        methods_by_name: The methods by name.
 
     Raises:
         UnknownName: A robot, case or method that there is not.
@@ -41,24 +44,24 @@ class Suite:
     robots: tuple[str, ...]
     cases: tuple[str | Case, ...]
     methods: tuple[str | Method, ...]
-    targets: int = 100
+    tasks: int = 100
     seeds: int = 1
     budget: int = 5000
     rng: int = 0
-    arms: dict[str, str] = field(init=False, repr=False)  # robots by name
-    tasks: dict[str, Case] = field(init=False, repr=False)
-    entrants: dict[str, Method] = field(init=False, repr=False)
+    robots_by_name: dict[str, str] = field(init=False, repr=False)
+    cases_by_name: dict[str, Case] = field(init=False, repr=False)
+    methods_by_name: dict[str, Method] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        for what in ("targets", "seeds", "budget"):
+        for what in ("tasks", "seeds", "budget"):
             if getattr(self, what) < 1:
                 raise InvalidSetting(f"{what} is at least 1, got {getattr(self, what)}")
         labels = [load_robot(robot).name for robot in self.robots]
-        object.__setattr__(self, "arms", _named("robot", labels, self.robots))
+        object.__setattr__(self, "robots_by_name", _named("robot", labels, self.robots))
         cases = [case_of(case) for case in self.cases]
-        object.__setattr__(self, "tasks", _named("case", [case.name for case in cases], cases))
+        object.__setattr__(self, "cases_by_name", _named("case", [case.name for case in cases], cases))
         methods = [method_of(method) for method in self.methods]
-        object.__setattr__(self, "entrants", _named("method", [method.name for method in methods], methods))
+        object.__setattr__(self, "methods_by_name", _named("method", [method.name for method in methods], methods))
         for method in methods:
             if isinstance(method, Peer):
                 method.need()
@@ -66,37 +69,38 @@ class Suite:
     @property
     def trials(self) -> int:
         """How many rows it has."""
-        return len(self.arms) * len(self.tasks) * len(self.entrants) * self.targets * self.seeds
+        pairs = len(self.robots_by_name) * len(self.cases_by_name)
+        return pairs * len(self.methods_by_name) * self.tasks * self.seeds
 
     def absent(self) -> dict[str, str]:
-        """Why a robot has no task of a case, by ``robot/case``; of those that have some, nothing."""
+        """Why a robot has no task of a case, by ``robot/case``; pairs that have tasks are left out."""
         found = {}
-        for (robot, spec), case in itertools.product(self.arms.items(), self.tasks.values()):
+        for (robot, spec), case in itertools.product(self.robots_by_name.items(), self.cases_by_name.values()):
             reason = case.lacks(load_robot(spec), generator(self.rng, robot, case.name))
             if reason:
                 found[pair_name(robot, case.name)] = reason
         return found
 
     @checked
-    def units(
+    def work_items(
         self, done: Set[tuple[str, str, str, int, int]] = frozenset(), absent: Container[str] = ()
-    ) -> Iterator[Unit]:
-        """The work that is left, a task at a time, without what is ``absent``."""
-        for (robot, spec), case, target in itertools.product(
-            self.arms.items(), self.tasks.values(), range(self.targets)
+    ) -> Iterator[WorkItem]:
+        """The trials that are not ``done``, a work item a task, without the ``absent`` pairs of robot and case."""
+        for (robot, spec), case, number in itertools.product(
+            self.robots_by_name.items(), self.cases_by_name.values(), range(self.tasks)
         ):
-            left = [
+            runs = [
                 (method, seed)
-                for method in self.entrants.values()
+                for method in self.methods_by_name.values()
                 for seed in range(self.seeds)
-                if (robot, case.name, method.name, target, seed) not in done
+                if (robot, case.name, method.name, number, seed) not in done
             ]
-            if left and pair_name(robot, case.name) not in absent:
-                yield Unit(robot, spec, case, target, tuple(left), self.budget, self.rng)
+            if runs and pair_name(robot, case.name) not in absent:
+                yield WorkItem(robot, spec, case, number, tuple(runs), self.budget, self.rng)
 
 
 def pair_name(robot: str, case: str) -> str:
-    """What a case of a robot is called."""
+    """Name of a pair of robot and case."""
     return f"{robot}/{case}"
 
 

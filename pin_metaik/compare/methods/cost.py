@@ -1,4 +1,4 @@
-"""What a kernel evaluation costs: the unit in which methods get the same budget.
+"""The cost of a kernel evaluation: the unit in which methods get the same budget.
 
 An evaluation of forward kinematics counts 1. With the Jacobian that a descent needs it counts ``FK_WITH_JACOBIAN``, the
 measured ratio of two compiled loops that differ in nothing else: 1.16 to 1.19 on eleven arms, by
@@ -10,7 +10,7 @@ counted; processor time shows it.
 from __future__ import annotations
 
 FK_WITH_JACOBIAN = 1.2
-TENTHS = round(10 * FK_WITH_JACOBIAN)  # whole numbers: no rounding decides what a budget pays for
+TENTHS = round(10 * FK_WITH_JACOBIAN)  # whole numbers: no rounding decides how many steps a budget pays for
 
 
 def steps_within(budget: int) -> int:
@@ -18,6 +18,6 @@ def steps_within(budget: int) -> int:
     return 10 * budget // TENTHS
 
 
-def price_of(steps: int) -> int:
-    """Kernel evaluations that so many evaluations with a Jacobian cost, rounded up."""
+def evaluations_of(steps: int) -> int:
+    """Kernel evaluations that a number of evaluations with a Jacobian costs, rounded up."""
     return -(-TENTHS * steps // 10)

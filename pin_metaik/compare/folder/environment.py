@@ -10,9 +10,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from pin_metaik.compare.cost import FK_WITH_JACOBIAN
-from pin_metaik.compare.reading import entries
-from pin_metaik.compare.store import replace_text
+from pin_metaik.compare.folder.reading import entries
+from pin_metaik.compare.folder.store import replace_text
+from pin_metaik.compare.methods.cost import FK_WITH_JACOBIAN
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.files import read_json
 
@@ -42,8 +42,8 @@ def environment(command: str) -> dict[str, Any]:
     }
 
 
-def record(folder: Path, command: str) -> None:
-    """Add this process to those that worked on the comparison in a folder."""
+def append_environment(folder: Path, command: str) -> None:
+    """Append this process to the list of processes that worked on the comparison in a folder."""
     replace_text(folder / FILE, json.dumps([*read_environment(folder), environment(command)], indent=2) + "\n")
 
 

@@ -1,4 +1,4 @@
-"""One trial of a comparison again: what was asked, what came out, and whether that is what its row says."""
+"""One trial of a comparison again: its task, its answer, and whether the answer equals its row."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from pin_metaik.arguments import checked
-from pin_metaik.compare.case import Task
-from pin_metaik.compare.store import read_record, read_rows
-from pin_metaik.compare.suite import pair_name
-from pin_metaik.compare.trial import Trial
-from pin_metaik.compare.unit import Unit
+from pin_metaik.compare.cases.case import Task
+from pin_metaik.compare.folder.store import read_manifest, read_rows
+from pin_metaik.compare.trials.suite import pair_name
+from pin_metaik.compare.trials.trial import Trial
+from pin_metaik.compare.trials.work_item import WorkItem
 from pin_metaik.errors import InvalidSetting, UnknownName
 
 ROWS = ("rotation", "", "")  # the word stands before the first row of a matrix
@@ -24,9 +24,9 @@ class Replay:
     """A trial that was run again.
 
     Attributes:
-        trial: What came out.
-        row: What its row says; None if it has none yet.
-        task: What was asked; None if the case could not draw it: the trial has the error.
+        trial: The new row.
+        row: The stored row; None if there is none yet.
+        task: The task; None if the case could not draw it: the trial has the error.
     """
 
     trial: Trial
@@ -39,7 +39,7 @@ class Replay:
         return self.row is None or self.row.reproducible == self.trial.reproducible
 
     def lines(self) -> Iterator[str]:
-        """What to show."""
+        """Lines to print."""
         trial = self.trial
         yield trial.name
         yield from self._asked()
@@ -50,20 +50,20 @@ class Replay:
             yield f"x = {_numbers(np.array(trial.x, dtype=float))}"
             yield f"errors: {trial.position_error} m, {trial.orientation_error} rad; |x - x0| = {trial.displacement}"
         spent = "does not tell" if trial.evaluations is None else f"{trial.evaluations:,}"
-        yield f"kernel evaluations: {spent} of {trial.allowed:,}; {1e3 * (trial.seconds or 0.0):.2f} ms"
+        yield f"kernel evaluations: {spent} of {trial.budget:,}; {1e3 * (trial.seconds or 0.0):.2f} ms"
         if self.row is None:
             yield "its row is not there yet"
         else:
             yield "as its row says" if self.same else f"its row differs: {self.row}"
 
     def _asked(self) -> Iterator[str]:
-        """The poses of the task, and what they were made from."""
+        """The poses of the task, and the coordinates that they were made from."""
         if self.task is None:
             return
         poses = self.task.targets
         for i, pose in enumerate(poses, start=1):
             which = f", pose {i}" if len(poses) > 1 else ""
-            yield f"target {self.trial.target}{which}: position {_numbers(pose.translation)} m"
+            yield f"task {self.trial.task}{which}: position {_numbers(pose.translation)} m"
             first, *others = map(_numbers, pose.rotation)
             yield f"          rotation {first}"
             yield from (f"                   {row}" for row in others)
@@ -77,51 +77,51 @@ def replay(folder: Path, name: str) -> Replay:
 
     Args:
         folder: Of the comparison.
-        name: ``robot/case/target/method/seed``.
+        name: ``robot/case/task/method/seed``.
 
     Raises:
-        InvalidSetting: The folder holds no comparison, the name is none, or the comparison has no such trial.
+        InvalidSetting: The folder holds no comparison, the name is malformed, or the comparison has no such trial.
         UnknownName: The comparison has no such robot, case or method.
     """
-    record = read_record(folder)
-    suite = record.suite(folder)
+    manifest = read_manifest(folder)
+    suite = manifest.suite(folder)
     try:
-        robot, case, target, method, seed = name.split("/")
-        numbers = int(target), int(seed)
+        robot, case, task, method, seed = name.split("/")
+        numbers = int(task), int(seed)
     except ValueError:
         raise InvalidSetting(
-            f"a trial is ROBOT/CASE/TARGET/METHOD/SEED, e.g. panda/singular/17/gwo+dls/0, got {name!r}"
+            f"a trial is ROBOT/CASE/TASK/METHOD/SEED, e.g. panda/singular/17/gwo+dls/0, got {name!r}"
         ) from None
-    for kind, number, count in (("target", numbers[0], suite.targets), ("seed", numbers[1], suite.seeds)):
+    for kind, number, count in (("task", numbers[0], suite.tasks), ("seed", numbers[1], suite.seeds)):
         if not 0 <= number < count:
             raise InvalidSetting(f"the {kind}s of this comparison are 0 to {count - 1}, got {number}")
     for kind, word, known in (
-        ("robot", robot, suite.arms),
-        ("case", case, suite.tasks),
-        ("method", method, suite.entrants),
+        ("robot", robot, suite.robots_by_name),
+        ("case", case, suite.cases_by_name),
+        ("method", method, suite.methods_by_name),
     ):
         if word not in known:
             raise UnknownName(kind, word, known)
-    if pair_name(robot, case) in record.absent:
-        raise InvalidSetting(f"no trial {name}: {record.absent[pair_name(robot, case)]}")
-    unit = Unit(
+    if pair_name(robot, case) in manifest.absent:
+        raise InvalidSetting(f"no trial {name}: {manifest.absent[pair_name(robot, case)]}")
+    item = WorkItem(
         robot,
-        suite.arms[robot],
-        suite.tasks[case],
+        suite.robots_by_name[robot],
+        suite.cases_by_name[case],
         numbers[0],
-        ((suite.entrants[method], numbers[1]),),
+        ((suite.methods_by_name[method], numbers[1]),),
         suite.budget,
         suite.rng,
     )
-    trial = unit.work()[0]
+    trial = item.run()[0]
     row = next((row for row in read_rows(folder) if row.key == trial.key), None)
-    return Replay(trial, row, _task(unit))
+    return Replay(trial, row, _task(item))
 
 
-def _task(unit: Unit) -> Task | None:
+def _task(item: WorkItem) -> Task | None:
     try:
-        return unit.task()
-    except Exception:  # of a case of anybody's; the trial says which
+        return item.draw()
+    except Exception:  # raised by a user's case; the trial has it
         return None
 
 

@@ -5,24 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
-from pin_metaik.compare.record import CaseRecord, Record
-from pin_metaik.compare.statistics import Pair, compare_all, wilson
-from pin_metaik.compare.trial import Trial
+from pin_metaik.compare.folder.manifest import CaseEntry, Manifest
+from pin_metaik.compare.folder.store import read_manifest, read_rows
+from pin_metaik.compare.results.statistics import Pair, compare_all, wilson
+from pin_metaik.compare.trials.trial import Trial
 from pin_metaik.ik import IKStatus
 from pin_metaik.plain import fields_of
 
-PENALTY = 10.0  # an unsolved trial costs this many times what was allowed ("PAR10")
+PENALTY = 10.0  # an unsolved trial costs this many times its budget ("PAR10")
 
 
 @dataclass(frozen=True)
 class Summary:
-    """What became of some trials.
+    """Counts and quantiles of some trials.
 
     Attributes:
         trials: How many.
@@ -61,36 +63,36 @@ class Results:
     """A comparison's rows.
 
     Attributes:
-        record: What was asked for.
+        manifest: What was asked for.
         trials: The rows that there are.
     """
 
-    record: Record
+    manifest: Manifest
     trials: Sequence[Trial]
 
     @property
     def robots(self) -> list[str]:
         """Names of the robots."""
-        return list(self.record.robots)
+        return list(self.manifest.robots)
 
     @property
-    def cases(self) -> dict[str, CaseRecord]:
+    def cases(self) -> dict[str, CaseEntry]:
         """The cases by name."""
-        return self.record.cases
+        return self.manifest.cases
 
     @property
     def methods(self) -> list[str]:
         """Names of the methods."""
-        return list(self.record.methods)
+        return list(self.manifest.methods)
 
     @cached_property
-    def counted(self) -> list[str]:
-        """Names of the methods that tell how many evaluations they spend: only these can be ranked by them."""
-        silent = {trial.method for trial in self.trials if trial.evaluations is None and trial.error is None}
-        return [method for method in self.methods if method not in silent]
+    def rankable(self) -> list[str]:
+        """Names of the methods that report how many evaluations they spend: only these can be ranked by evaluations."""
+        without_count = {trial.method for trial in self.trials if trial.evaluations is None and trial.error is None}
+        return [method for method in self.methods if method not in without_count]
 
     @checked
-    def of(self, *, robot: str | None = None, case: str | None = None, method: str | None = None) -> list[Trial]:
+    def rows(self, *, robot: str | None = None, case: str | None = None, method: str | None = None) -> list[Trial]:
         """The rows of a robot, a case, a method."""
         if method is None:
             groups: Iterable[list[Trial]] = self._groups.values()
@@ -102,7 +104,7 @@ class Results:
     @checked
     def spent(self, case: str, method: str) -> Array:
         """Evaluations to solution of each row, ``inf`` of unsolved ones."""
-        rows = self.of(case=case, method=method)
+        rows = self.rows(case=case, method=method)
         return np.array(
             [t.evaluations if t.solved and t.evaluations is not None else np.inf for t in rows], dtype=float
         )
@@ -111,8 +113,8 @@ class Results:
     def costs(self, case: str, robot: str | None = None) -> Array:
         """Costs (b, k) of the methods that can be ranked, on every task of a case that all of them tried.
 
-        A trial costs its evaluations, at least 1, if it solved the task, otherwise ten times what was allowed; a right
-        UNREACHABLE costs 1, as what is spent beside it goes into the nearest pose. Several seeds are taken together by
+        A trial costs its evaluations, at least 1, if it solved the task, otherwise ten times its budget; a right
+        UNREACHABLE costs 1, as its evaluations are spent on the nearest pose. Several seeds are taken together by
         the geometric mean.
         """
         if (case, robot) not in self._costs:
@@ -122,27 +124,27 @@ class Results:
     @checked
     def hopeless(self, case: str) -> bool:
         """Whether every success in a case is a right UNREACHABLE: then it says nothing of searches."""
-        ends = {trial.status for trial in self.of(case=case) if trial.solved}
+        ends = {trial.status for trial in self.rows(case=case) if trial.solved}
         return ends == {IKStatus.UNREACHABLE}
 
     @checked
     def pairs(self, case: str) -> list[Pair]:
         """Every pair of methods that can be ranked, tested on a case."""
         if case not in self._pairs:
-            self._pairs[case] = compare_all(self.counted, self.costs(case))
+            self._pairs[case] = compare_all(self.rankable, self.costs(case))
         return self._pairs[case]
 
     def _table(self, case: str, robot: str | None) -> Array:
         table: dict[tuple[str, int], dict[str, list[float]]] = {}
-        for method in self.counted:
-            for trial in self.of(robot=robot, case=case, method=method):
-                table.setdefault((trial.robot, trial.target), {}).setdefault(method, []).append(cost(trial))
+        for method in self.rankable:
+            for trial in self.rows(robot=robot, case=case, method=method):
+                table.setdefault((trial.robot, trial.task), {}).setdefault(method, []).append(cost(trial))
         whole = [
-            [float(np.exp(np.mean(np.log(row[method])))) for method in self.counted]
+            [float(np.exp(np.mean(np.log(row[method])))) for method in self.rankable]
             for row in table.values()
-            if len(row) == len(self.counted) and len({len(costs) for costs in row.values()}) == 1
+            if len(row) == len(self.rankable) and len({len(costs) for costs in row.values()}) == 1
         ]
-        return np.array(whole).reshape(-1, len(self.counted))
+        return np.array(whole).reshape(-1, len(self.rankable))
 
     @cached_property
     def _costs(self) -> dict[tuple[str, str | None], Array]:
@@ -155,24 +157,34 @@ class Results:
     @cached_property
     def _groups(self) -> dict[tuple[str, str, str], list[Trial]]:
         groups: dict[tuple[str, str, str], list[Trial]] = {}
-        for trial in sorted(self.trials, key=lambda trial: (trial.target, trial.seed)):
-            if self.record.holds(trial):
+        for trial in sorted(self.trials, key=lambda trial: (trial.task, trial.seed)):
+            if self.manifest.contains(trial):
                 groups.setdefault((trial.robot, trial.case, trial.method), []).append(trial)
         return groups
 
 
+@checked
+def read_results(folder: Path) -> Results:
+    """The comparison of a folder and its rows so far, for statistics.
+
+    Raises:
+        InvalidSetting: The folder holds none, or a line in the middle is no row.
+    """
+    return Results(read_manifest(folder), read_rows(folder))
+
+
 def cost(trial: Trial) -> float:
-    """What a trial costs: its evaluations, or ten times what was allowed; a right no costs one."""
+    """Cost of a trial: its evaluations, or ten times its budget if it failed; 1 for a right UNREACHABLE."""
     if trial.solved and trial.status == IKStatus.UNREACHABLE:
         return 1.0
     if trial.solved and trial.evaluations is not None:
         return max(1.0, float(trial.evaluations))
-    return PENALTY * trial.allowed
+    return PENALTY * trial.budget
 
 
 @checked
 def summarise(trials: Sequence[Trial]) -> Summary:
-    """What became of these trials."""
+    """Counts and quantiles of these trials."""
     solved = [trial for trial in trials if trial.solved]
     return Summary(
         trials=len(trials),

@@ -1,13 +1,13 @@
-"""Cases and methods by their names, by ``module:object``, or as they are."""
+"""Cases and methods by name, by ``module:object``, or given as objects."""
 
 from __future__ import annotations
 
 import importlib
 
-from pin_metaik.compare.case import Case
 from pin_metaik.compare.cases import CASES
-from pin_metaik.compare.method import Method
+from pin_metaik.compare.cases.case import Case
 from pin_metaik.compare.methods import named
+from pin_metaik.compare.methods.method import Method
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.lookup import lookup
 

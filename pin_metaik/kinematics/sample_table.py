@@ -21,7 +21,7 @@ TURN = 0.6  # what a whole turn of an axis counts, in root-mean-square distances
 
 
 @dataclass(frozen=True, eq=False)
-class Atlas:
+class SampleTable:
     """Sampled coordinates with the features of their poses.
 
     A feature (9 T,) is, for each tip, its position and its x and z axes, the axes times ``scale`` (m), so that
@@ -41,7 +41,7 @@ class Atlas:
     gains: NDArray[np.float32]
     scale: float
 
-    def moved(self, moves: NDArray[np.float64]) -> Atlas:
+    def moved(self, moves: NDArray[np.float64]) -> SampleTable:
         """The same samples with the poses of each tip moved as a whole by moves (T, 4, 4); gains are in tip frames."""
         leaves = self.leaves.copy()
         for t, M in enumerate(moves.astype(np.float32)):
@@ -62,12 +62,12 @@ def no_samples(n: int, tips: int) -> Samples:
     return Samples(none.reshape(0, 9 * tips, LEAF), none.reshape(0, n), none.reshape(0, n, 6), 1.0)
 
 
-def chart(
+def build_table(
     x: NDArray[np.float64],
     poses: NDArray[np.float64],
     gains: Callable[[NDArray[np.float64]], NDArray[np.float32]],
-) -> Atlas:
-    """An atlas of the coordinates x (LEAF LEAF, n) with the poses (k, T, 4, 4) of their tips, and gains for them."""
+) -> SampleTable:
+    """The table of the coordinates x (LEAF LEAF, n) with the poses (k, T, 4, 4) of their tips, and gains for them."""
     positions = poses[..., :3, 3]
     spread = np.sqrt(((positions - positions.mean(axis=0)) ** 2).sum(axis=-1).mean())
     scale = TURN * max(float(spread), 1e-6)
@@ -77,7 +77,7 @@ def chart(
     leaves = features[order].reshape(-1, LEAF, features.shape[1])
     leaves = np.concatenate([leaves.mean(axis=1)[None], leaves])
     columns = np.ascontiguousarray(leaves.transpose(0, 2, 1), dtype=np.float32)
-    return Atlas(columns, x[order].astype(np.float32), gains(x[order]), scale)
+    return SampleTable(columns, x[order].astype(np.float32), gains(x[order]), scale)
 
 
 def _leaves(features: NDArray[np.float64], members: NDArray[np.int64]) -> NDArray[np.int64]:

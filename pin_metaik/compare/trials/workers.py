@@ -1,4 +1,4 @@
-"""Work in several processes, here or on a cluster: what each unit comes to, as soon as it is done."""
+"""Work items in several processes, here or on a cluster: the rows of each, as soon as it is done."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from multiprocessing import resource_tracker
 from multiprocessing.util import Finalize
 from typing import Any, Literal, TypeAlias
 
-from pin_metaik.compare.trial import Trial
-from pin_metaik.compare.unit import Unit
+from pin_metaik.compare.trials.trial import Trial
+from pin_metaik.compare.trials.work_item import WorkItem
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import Pressed, deaf_children
 from pin_metaik.lookup import need
@@ -33,8 +33,8 @@ def need_joblib() -> None:
     need("comparing methods", "compare", "joblib")
 
 
-def worked(units: list[Unit], jobs: int, backend: Backend, scheduler: str | None) -> Iterator[list[Trial]]:
-    """The rows of units, in the order in which they are finished."""
+def worked(items: list[WorkItem], jobs: int, backend: Backend, scheduler: str | None) -> Iterator[list[Trial]]:
+    """The rows of work items, in the order in which they are finished."""
     with contextlib.ExitStack() as stack:
         chosen: dict[str, Any] = {"backend": backend, "n_jobs": jobs}
         if backend == "dask":
@@ -42,7 +42,7 @@ def worked(units: list[Unit], jobs: int, backend: Backend, scheduler: str | None
         stack.enter_context(_no_last_words())
         others = set(threading.enumerate())
         with Pressed(held=True) as pressed:  # or it might come in a callback of weak references, which swallows it
-            rows = _begun(units, chosen)
+            rows = _begun(items, chosen)
         try:
             pressed.check()
             for trials in rows:  # noqa: UP028  # `yield from` would close them before the lines below
@@ -55,7 +55,7 @@ def worked(units: list[Unit], jobs: int, backend: Backend, scheduler: str | None
             raise
 
 
-def _begun(units: list[Unit], chosen: dict[str, Any]) -> Any:
+def _begun(items: list[WorkItem], chosen: dict[str, Any]) -> Any:
     """The generator of rows, its processes begun; they do not hear Ctrl-C."""
     from joblib import Parallel, delayed, parallel_config
     from joblib.externals.loky.backend import resource_tracker as lokys_tracker
@@ -64,7 +64,7 @@ def _begun(units: list[Unit], chosen: dict[str, Any]) -> Any:
         tracker.ensure_running()
     with parallel_config(**chosen), deaf_children():
         parallel = Parallel(return_as="generator_unordered", pre_dispatch="3*n_jobs")
-        return parallel(delayed(Unit.work)(unit) for unit in units)
+        return parallel(delayed(WorkItem.run)(item) for item in items)
 
 
 @contextlib.contextmanager

@@ -1,4 +1,4 @@
-"""The JSON files of a comparison, read back: somebody may have edited them, and what is wrong is named."""
+"""The JSON files of a comparison, read back: they may have been edited, and wrong keys and values are named."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def entries(values: object, place: object, needed: Collection[str], optional: Co
     """A JSON object with the keys that it should have and no others.
 
     Raises:
-        InvalidSetting: It is none, lacks one, or has another.
+        InvalidSetting: The value is no object, lacks a key, or has an unknown one.
     """
     if not isinstance(values, dict):
         raise InvalidSetting(f"{place} is not an object with {', '.join(needed)}")

@@ -1,4 +1,4 @@
-"""What was compared, in plain words: enough to report on it, and the names to run it again."""
+"""The manifest of a comparison: what was compared, as plain values, enough to report on it and to run it again."""
 
 from __future__ import annotations
 
@@ -8,26 +8,26 @@ from pathlib import Path
 from typing import Any
 
 from pin_metaik.arguments import checked
-from pin_metaik.compare.case import Case
-from pin_metaik.compare.method import Method
-from pin_metaik.compare.reading import entries
-from pin_metaik.compare.suite import Suite
-from pin_metaik.compare.trial import Trial
+from pin_metaik.compare.cases.case import Case
+from pin_metaik.compare.folder.reading import entries
+from pin_metaik.compare.methods.method import Method
+from pin_metaik.compare.trials.suite import Suite
+from pin_metaik.compare.trials.trial import Trial
 from pin_metaik.errors import InvalidSetting
 
-RECORD = "suite.json"
+MANIFEST = "suite.json"
 LATER = ("files", "absent")
-"""What records of before did not have."""
+"""Keys that earlier manifests did not have."""
 
 
 @checked
 @dataclass(frozen=True)
-class CaseRecord:
+class CaseEntry:
     """A case.
 
     Attributes:
-        name: What it is called in rows.
-        spec: What it was asked for by.
+        name: Its name in rows.
+        spec: The name or ``module:object`` by which it was asked for.
         about: How its targets are made.
         success: What counts as one.
     """
@@ -40,14 +40,14 @@ class CaseRecord:
 
 @checked
 @dataclass(frozen=True)
-class Record:
+class Manifest:
     """A comparison.
 
     Attributes:
-        robots: What each was asked for by, by the name in rows.
+        robots: The name or path by which each was asked for, by its name in rows.
         cases: The cases by name.
-        methods: What each was asked for by, by name; its name, when it came as an object.
-        targets: Tasks of each case for each robot.
+        methods: The name or ``module:object`` by which each was asked for, by name; its name, if it was an object.
+        tasks: Tasks of each case for each robot.
         seeds: Repetitions of each method on each task.
         budget: Kernel evaluations for each target.
         rng: Seed of everything random.
@@ -56,9 +56,9 @@ class Record:
     """
 
     robots: dict[str, str]
-    cases: dict[str, CaseRecord]
+    cases: dict[str, CaseEntry]
     methods: dict[str, str]
-    targets: int
+    tasks: int
     seeds: int
     budget: int
     rng: int
@@ -66,35 +66,35 @@ class Record:
     absent: dict[str, str] = field(default_factory=dict)
 
     @staticmethod
-    def of(suite: Suite) -> Record:
-        """What there is to know of a comparison before it has a folder."""
-        cases = zip(_specs(suite.cases), suite.tasks.values(), strict=True)
-        return Record(
-            suite.arms,
-            {case.name: CaseRecord(case.name, spec, case.about, case.success) for spec, case in cases},
-            dict(zip(suite.entrants, _specs(suite.methods), strict=True)),
-            suite.targets,
+    def from_suite(suite: Suite) -> Manifest:
+        """The manifest of a comparison that has no folder yet."""
+        cases = zip(_specs(suite.cases), suite.cases_by_name.values(), strict=True)
+        return Manifest(
+            suite.robots_by_name,
+            {case.name: CaseEntry(case.name, spec, case.about, case.success) for spec, case in cases},
+            dict(zip(suite.methods_by_name, _specs(suite.methods), strict=True)),
+            suite.tasks,
             suite.seeds,
             suite.budget,
             suite.rng,
         )
 
     @staticmethod
-    def from_json(values: object, place: object = RECORD) -> Record:
+    def from_json(values: object, place: object = MANIFEST) -> Manifest:
         """What ``to_json`` made.
 
         Raises:
             InvalidSetting: It did not make that; the message names the place and the key.
         """
-        known = [one.name for one in fields(Record)]
+        known = [one.name for one in fields(Manifest)]
         content = entries(values, place, [name for name in known if name not in LATER], LATER)
-        inner = [one.name for one in fields(CaseRecord)]
+        inner = [one.name for one in fields(CaseEntry)]
         try:
             cases = {
-                name: CaseRecord(**entries(case, f"case {name!r}", inner))
+                name: CaseEntry(**entries(case, f"case {name!r}", inner))
                 for name, case in entries(content["cases"], "cases", (), content["cases"]).items()
             }
-            return Record(**{**content, "cases": cases})
+            return Manifest(**{**content, "cases": cases})
         except InvalidSetting as error:
             raise InvalidSetting(f"{place}: {error}") from None
 
@@ -106,21 +106,21 @@ class Record:
         """The comparison in a folder, to be run; raises what ``Suite`` does where names mean nothing any more."""
         robots = [str(folder / self.files[name]) if name in self.files else spec for name, spec in self.robots.items()]
         specs = [case.spec for case in self.cases.values()]
-        numbers = (self.targets, self.seeds, self.budget, self.rng)
+        numbers = (self.tasks, self.seeds, self.budget, self.rng)
         return Suite(tuple(robots), tuple(specs), tuple(self.methods.values()), *numbers)
 
     @property
     def trials(self) -> int:
         """How many rows it has."""
         pairs = len(self.robots) * len(self.cases) - len(self.absent)
-        return pairs * len(self.methods) * self.targets * self.seeds
+        return pairs * len(self.methods) * self.tasks * self.seeds
 
-    def holds(self, trial: Trial) -> bool:
+    def contains(self, trial: Trial) -> bool:
         """Whether a row is one of this comparison's."""
         named = trial.robot in self.robots and trial.case in self.cases and trial.method in self.methods
-        return named and trial.target < self.targets and trial.seed < self.seeds
+        return named and trial.task < self.tasks and trial.seed < self.seeds
 
-    def check_grown_from(self, before: Record, where: object) -> None:
+    def check_grown_from(self, before: Manifest, where: object) -> None:
         """Make sure that all rows of an earlier comparison are rows of this one.
 
         Raises:
@@ -136,7 +136,7 @@ class Record:
             left_out = [word for word in getattr(before, name) if word not in getattr(self, name)]
             if left_out:
                 raise InvalidSetting(f"{where} has rows of {name} {', '.join(left_out)}: name them, too, to go on")
-        for name in ("targets", "seeds"):
+        for name in ("tasks", "seeds"):
             if getattr(self, name) < getattr(before, name):
                 raise InvalidSetting(
                     f"{where} holds a comparison with {getattr(before, name)} {name}: ask for as many, or more"

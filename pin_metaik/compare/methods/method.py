@@ -1,4 +1,4 @@
-"""What is compared: anything that answers an inverse-kinematics problem within a budget of kernel evaluations."""
+"""Methods: anything that answers an inverse-kinematics problem within a budget of kernel evaluations."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from pin_metaik.ik import IKProblem
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What a method says.
+    """The answer of a method to a problem.
 
     Attributes:
         x: (n,) its coordinates, the best it has whether it solved the problem or not.
         claimed: Whether it says that it solved the problem; Pinocchio will check.
         evaluations: Kernel evaluations spent: 1 for forward kinematics, ``FK_WITH_JACOBIAN`` with a Jacobian. None when
             the method does not tell.
-        status: How it ended, in its own words; ``"UNREACHABLE"`` when it says that nobody could.
+        status: How it ended, in its own words; ``"UNREACHABLE"`` when it says that the target is out of reach.
         trace: (g, 2) evaluations and best cost so far, when it has them.
     """
 
@@ -36,12 +36,12 @@ class Method(Protocol):
     """A method. One object with a name and this call is all that a method of your own takes.
 
     Attributes:
-        name: What it is called in tables.
+        name: Name in tables.
     """
 
     @property
     def name(self) -> str:
-        """What it is called in tables."""
+        """Name in tables."""
         ...
 
     def solve(self, problem: IKProblem, x0: Array, budget: int, rng: np.random.Generator) -> Answer:

@@ -22,8 +22,8 @@ def test_a_frame_is_placed_as_in_the_whole_model(name: str) -> None:
         whole = pin.updateFramePlacement(model, chain.data, frame)
         assert_allclose(chain.tip.place(one).homogeneous, whole.homogeneous, atol=1e-12)
         assert_allclose(place, pin.SE3ToXYZQUATtuple(whole), atol=1e-12)
-    assert chain.tip.limb.njoints == len(model.supports[model.frames[frame].parentJoint])
-    assert chain.tip.limb.nframes == 2
+    assert chain.tip.reduced.njoints == len(model.supports[model.frames[frame].parentJoint])
+    assert chain.tip.reduced.nframes == 2
 
 
 def test_a_joint_on_the_way_that_mimics_another_keeps_the_whole_model() -> None:
@@ -31,6 +31,6 @@ def test_a_joint_on_the_way_that_mimics_another_keeps_the_whole_model() -> None:
     mimic = next(j for j in range(1, model.njoints) if model.joints[j].nq == 0)
     frame = next(f.name for f in model.frames if f.parentJoint == mimic and f.type == pin.FrameType.BODY)
     chain = mik.Chain(model, frame)
-    assert chain.tip.limb is model
+    assert chain.tip.reduced is model
     q = chain.q(chain.box.sample(np.random.default_rng(0), 1)[0])
     assert_allclose(chain.tip.place(q).homogeneous, chain.placements(q)[0].homogeneous, atol=1e-15)

@@ -1,4 +1,4 @@
-"""A refiner whose steps are paid for in kernel evaluations."""
+"""A refiner whose steps are counted in kernel evaluations."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.compare.cost import price_of, steps_within
+from pin_metaik.compare.methods.cost import evaluations_of, steps_within
 from pin_metaik.ik import IKProblem, Refinement, Refiner
 
 
 @dataclass(frozen=True)
-class Priced:
+class Counted:
     """A refiner that spends and reports kernel evaluations: each of its steps takes a Jacobian.
 
     Attributes:
@@ -27,4 +27,4 @@ class Priced:
         if steps == 0:
             return Refinement(problem.limits.clip(starts[0]), False, evaluations)
         found = self.refiner.refine(problem, starts, steps)
-        return found._replace(evaluations=price_of(found.evaluations))
+        return found._replace(evaluations=evaluations_of(found.evaluations))

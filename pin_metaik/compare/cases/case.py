@@ -1,4 +1,4 @@
-"""What is asked of a method: a case draws tasks for any robot and says what counts as a success."""
+"""Cases: each draws tasks for any robot, and judges whether an attempt is a success."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pinocchio as pin
 from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
 from pin_metaik.collision import CollisionWorld
-from pin_metaik.compare.method import Answer
+from pin_metaik.compare.methods.method import Answer
 from pin_metaik.errors import MetaIKError, UnsupportedJoint
 from pin_metaik.ik import IKProblem, IKStatus, Verdict
 from pin_metaik.kinematics import Chain
@@ -58,7 +58,7 @@ class Task:
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """What a method did with a task.
+    """The answers of a method to a task, and their verdicts.
 
     Attributes:
         x0: (n,) where it started.
@@ -87,7 +87,7 @@ class Attempt:
 
 
 def whole_arm(robot: Robot, rng: np.random.Generator) -> Chain:
-    """The joints that move the robot's default frame, as they are."""
+    """The chain of the robot's default frame, no joint locked."""
     return Chain(robot.model, robot.frame)
 
 
@@ -105,11 +105,11 @@ class Case:
     alone, so that a task is the same whatever else is compared.
 
     Attributes:
-        name: What it is called on the command line and in tables.
+        name: Name on the command line and in tables.
         about: How its targets are made, one sentence.
         draw: A task for a chain.
         chain: The chain that a robot is asked to move; one for all tasks.
-        world: What the robot stands in; tasks are drawn until what they were made from is free of collisions.
+        world: The world of a robot; tasks are drawn until the configurations they are made from are free of collisions.
         judge: Whether an attempt at a task is a success.
         success: What that means, one sentence.
     """
@@ -144,6 +144,6 @@ class Case:
             self.draw(self.chain(robot, rng), rng)
         except (NoTask, UnsupportedJoint) as none:
             return str(none)
-        except Exception:  # a case of anybody's: its rows will say it
+        except Exception:  # raised by a user's case: its rows will say it
             return ""
         return ""

@@ -7,10 +7,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from pin_metaik.arguments import checked
-from pin_metaik.compare.record import RECORD, Record
-from pin_metaik.compare.results import Results
-from pin_metaik.compare.trial import Trial
+from pin_metaik.compare.folder.manifest import MANIFEST, Manifest
+from pin_metaik.compare.trials.trial import Trial
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.files import read_json
 from pin_metaik.lookup import need
@@ -27,31 +25,31 @@ def need_parquet() -> None:
     need("writing Parquet", "compare", "pyarrow")
 
 
-def check_record(folder: Path, record: Record) -> None:
+def check_manifest(folder: Path, manifest: Manifest) -> None:
     """Make sure that a folder is good for a comparison: it has none yet, or this one, which may have grown.
 
     Raises:
         InvalidSetting: The folder holds rows of another budget or seed, or of more than is asked for now.
     """
-    if (folder / RECORD).exists():
-        record.check_grown_from(read_record(folder), folder)
+    if (folder / MANIFEST).exists():
+        manifest.check_grown_from(read_manifest(folder), folder)
 
 
-def write_record(folder: Path, record: Record) -> None:
-    """Write down what is compared."""
-    replace_text(folder / RECORD, json.dumps(record.to_json(), indent=2) + "\n")
+def write_manifest(folder: Path, manifest: Manifest) -> None:
+    """Write the manifest of a comparison."""
+    replace_text(folder / MANIFEST, json.dumps(manifest.to_json(), indent=2) + "\n")
 
 
-def read_record(folder: Path) -> Record:
+def read_manifest(folder: Path) -> Manifest:
     """The comparison of a folder.
 
     Raises:
-        InvalidSetting: The folder holds none, or what it holds is none.
+        InvalidSetting: The folder holds no comparison, or its manifest is damaged.
     """
-    path = folder / RECORD
+    path = folder / MANIFEST
     if not path.exists():
         raise InvalidSetting(f"{folder} holds no comparison: make one with pin-metaik compare --out {folder}")
-    return Record.from_json(read_json(path, InvalidSetting), path)
+    return Manifest.from_json(read_json(path, InvalidSetting), path)
 
 
 def read_rows(folder: Path) -> list[Trial]:
@@ -67,21 +65,11 @@ def read_rows(folder: Path) -> list[Trial]:
     rows: dict[tuple[Any, ...], Trial] = {}
     for number, line in enumerate(lines, start=1):
         try:
-            trial = Trial.of(json.loads(line))
+            trial = Trial.from_row(json.loads(line))
         except (ValueError, TypeError, KeyError):
             raise InvalidSetting(f"line {number} of {path} is no row: take it out to go on") from None
         rows.setdefault(trial.key, trial)
     return list(rows.values())
-
-
-@checked
-def read_results(folder: Path) -> Results:
-    """The comparison of a folder and its rows so far, for statistics.
-
-    Raises:
-        InvalidSetting: The folder holds none, or a line in the middle is no row.
-    """
-    return Results(read_record(folder), read_rows(folder))
 
 
 class Appender:
@@ -91,7 +79,7 @@ class Appender:
         self._path = folder / ROWS
 
     def __enter__(self) -> Appender:
-        """Cut off what a killed writer left half-written, and open the file."""
+        """Cut off a last line that a killed writer left incomplete, and open the file."""
         self._path.touch()
         with self._path.open("r+b") as file:
             text = file.read()
@@ -120,7 +108,7 @@ def write_parquet(folder: Path, trials: Iterable[Trial]) -> Path:
 
     text, number, real, truth = pa.string(), pa.int64(), pa.float64(), pa.bool_()
     types = {
-        "robot": text, "case": text, "method": text, "target": number, "seed": number, "allowed": number,
+        "robot": text, "case": text, "method": text, "task": number, "seed": number, "budget": number,
         "solved": truth, "met": truth, "claimed": truth, "status": text, "error": text, "position_error": real,
         "orientation_error": real, "displacement": real, "evaluations": number, "x": pa.list_(real),
         "curve": pa.list_(real), "seconds": real,

@@ -1,4 +1,4 @@
-"""What is handed to a worker: one task of a comparison, and who shall try it."""
+"""Work items, which processes are given: one task of a comparison, and the methods that are run on it."""
 
 from __future__ import annotations
 
@@ -6,24 +6,24 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from pin_metaik.collision import CollisionWorld
-from pin_metaik.compare.case import Case, Task
-from pin_metaik.compare.method import Method
-from pin_metaik.compare.trial import Trial, attempt, failed, generator
+from pin_metaik.compare.cases.case import Case, Task
+from pin_metaik.compare.methods.method import Method
+from pin_metaik.compare.trials.trial import Trial, attempt, failed, generator
 from pin_metaik.interrupts import Pressed
 from pin_metaik.kinematics import Chain
 from pin_metaik.robots import Robot, load_robot
 
 
 @dataclass(frozen=True)
-class Unit:
-    """One task, and who shall try it.
+class WorkItem:
+    """One task, and the methods that are run on it.
 
     Attributes:
         robot: Name of the robot.
-        spec: What ``load_robot`` takes.
+        spec: Its name or path, as ``load_robot`` takes it.
         case: The case.
-        target: Number of the task.
-        left: Methods and numbers of the repetitions.
+        number: Number of the task.
+        runs: Methods and numbers of the repetitions.
         budget: Kernel evaluations for each target.
         rng: Seed of everything random.
     """
@@ -31,38 +31,38 @@ class Unit:
     robot: str
     spec: str
     case: Case
-    target: int
-    left: tuple[tuple[Method, int], ...]
+    number: int
+    runs: tuple[tuple[Method, int], ...]
     budget: int
     rng: int
 
-    def task(self) -> Task:
-        """The task, the same whoever tries it."""
+    def draw(self) -> Task:
+        """Draw the task, the same for every method."""
         chain = _arm(self.spec, self.robot, self.case, self.rng)
         world = _world(self.spec, self.case)
-        return self.case.task(chain, world, generator(self.rng, self.robot, self.case.name, self.target))
+        return self.case.task(chain, world, generator(self.rng, self.robot, self.case.name, self.number))
 
-    def work(self) -> list[Trial]:
+    def run(self) -> list[Trial]:
         """Run the trials; a case that cannot draw its task is an error in each of their rows.
 
         Raises:
-            KeyboardInterrupt: Ctrl-C, also where a method has swallowed it: what it answered then is no row.
+            KeyboardInterrupt: Ctrl-C, also where a method has swallowed it: its answer is then no row.
         """
         with Pressed() as pressed:
             return self._rows(pressed)
 
     def _rows(self, pressed: Pressed) -> list[Trial]:
         try:
-            task = self.task()
+            task = self.draw()
         except Exception as error:
             pressed.check()
             return [
-                failed(Trial(self.robot, self.case.name, method.name, self.target, seed, self.budget), error)
-                for method, seed in self.left
+                failed(Trial(self.robot, self.case.name, method.name, self.number, seed, self.budget), error)
+                for method, seed in self.runs
             ]
         trials = []
-        for method, seed in self.left:
-            given = (self.robot, self.case, task, method, self.target, seed, self.budget, self.rng)
+        for method, seed in self.runs:
+            given = (self.robot, self.case, task, method, self.number, seed, self.budget, self.rng)
             if (id(task.chain), method.name) not in _warm:  # tables and compiled code are made before anything is timed
                 _warm.add((id(task.chain), method.name))
                 attempt(*given)

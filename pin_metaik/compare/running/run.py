@@ -1,4 +1,4 @@
-"""Running a comparison: tasks go to joblib's workers, rows come back and are on disk at once; nothing is done twice."""
+"""Running a comparison: work items go to joblib's workers, rows are written as they come back, none is run twice."""
 
 from __future__ import annotations
 
@@ -9,14 +9,22 @@ from time import perf_counter
 from typing import Any
 
 from pin_metaik.arguments import checked
-from pin_metaik.compare import environment
-from pin_metaik.compare.baggage import pack
-from pin_metaik.compare.case import NoTask
-from pin_metaik.compare.lock import locked
-from pin_metaik.compare.record import Record
-from pin_metaik.compare.store import ROWS, Appender, check_record, need_parquet, read_rows, write_parquet, write_record
-from pin_metaik.compare.suite import Suite
-from pin_metaik.compare.workers import Backend, need_joblib, worked
+from pin_metaik.compare.cases.case import NoTask
+from pin_metaik.compare.folder.environment import append_environment
+from pin_metaik.compare.folder.lock import locked
+from pin_metaik.compare.folder.manifest import Manifest
+from pin_metaik.compare.folder.robot_files import copy_robots
+from pin_metaik.compare.folder.store import (
+    ROWS,
+    Appender,
+    check_manifest,
+    need_parquet,
+    read_rows,
+    write_manifest,
+    write_parquet,
+)
+from pin_metaik.compare.trials.suite import Suite
+from pin_metaik.compare.trials.workers import Backend, need_joblib, worked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import Pressed
 from pin_metaik.optimize.settings import one_of
@@ -80,7 +88,7 @@ def compare(
     command: str = "pin_metaik.compare.compare(...)",
     watch: Watch | None = None,
 ) -> Outcome:
-    """Run a comparison, or what is left of it, into a folder. Ctrl-C, or worse, loses none of the finished tasks.
+    """Run a comparison, or the rest of it, into a folder. Ctrl-C, or a kill, loses none of the finished tasks.
 
     Rows, but for their times, depend neither on ``jobs`` nor on the backend nor on interruptions. A case that a robot
     has no task of is left out, and the outcome says so.
@@ -96,7 +104,7 @@ def compare(
 
     Raises:
         MissingExtra: joblib, pyarrow or distributed are not installed.
-        InvalidSetting: The folder holds another comparison, another process works on it, jobs are none, or the
+        InvalidSetting: The folder holds another comparison, another process works on it, ``jobs`` is 0, or the
             scheduler cannot be reached.
         CannotWrite: The folder cannot be made or written into.
         NoTask: No robot has a task of any of the cases.
@@ -110,15 +118,15 @@ def compare(
     need_joblib()
     began = perf_counter()
     absent = suite.absent()
-    if len(absent) == len(suite.arms) * len(suite.tasks):
+    if len(absent) == len(suite.robots_by_name) * len(suite.cases_by_name):
         raise NoTask("; ".join(f"{name}: {reason}" for name, reason in absent.items()))
-    record = replace(Record.of(suite), absent=absent)
-    check_record(folder, record)
+    manifest = replace(Manifest.from_suite(suite), absent=absent)
+    check_manifest(folder, manifest)
     folder.mkdir(parents=True, exist_ok=True)
     writable(folder / ROWS)
     with locked(folder, "comparison"):
-        write_record(folder, replace(record, files=pack(folder, suite)))
-        environment.record(folder, command)
+        write_manifest(folder, replace(manifest, files=copy_robots(folder, suite)))
+        append_environment(folder, command)
         rows = {trial.key: trial for trial in read_rows(folder)}
         before = len(rows)
 
@@ -126,17 +134,17 @@ def compare(
             write_parquet(folder, rows.values())
             errors = Counter(trial.error for trial in rows.values() if trial.error is not None)
             ((error, _),) = errors.most_common(1) or [("", 0)]
-            counts = (len(rows), record.trials, len(rows) - before, errors.total(), perf_counter() - began)
+            counts = (len(rows), manifest.trials, len(rows) - before, errors.total(), perf_counter() - began)
             return Outcome(folder, *counts, tuple(f"{name}: {why}" for name, why in absent.items()), error)
 
         try:
             with Pressed() as pressed, Appender(folder) as file:
-                for trials in worked(list(suite.units(rows.keys(), absent)), jobs, backend, scheduler):
+                for trials in worked(list(suite.work_items(rows.keys(), absent)), jobs, backend, scheduler):
                     pressed.check()
                     file.add(trials)
                     rows.update((trial.key, trial) for trial in trials)
                     label = f"{trials[-1].robot}, {trials[-1].case}"
-                    tell(watch, Progress(len(rows), record.trials, label=label))
+                    tell(watch, Progress(len(rows), manifest.trials, label=label))
         except KeyboardInterrupt as stop:
             return ended(stop, outcome())
         return outcome()

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
-from pin_metaik.compare.case import Attempt, Case, Task
-from pin_metaik.compare.method import Answer, Method
+from pin_metaik.compare.cases.case import Attempt, Case, Task
+from pin_metaik.compare.methods.method import Answer, Method
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik import IKProblem
 
@@ -31,10 +31,10 @@ class Trial:
         robot: Name of the robot.
         case: Name of the case.
         method: Name of the method.
-        target: Number of the task.
+        task: Number of the task.
         seed: Number of the repetition: other random numbers, and another start where the case leaves it free.
-        allowed: Kernel evaluations that were allowed.
-        solved: Whether it is a success by the case's judgement, within what was allowed.
+        budget: Kernel evaluations that were allowed, for all targets of the task together.
+        solved: Whether it is a success by the case's judgement, within the budget.
         met: Whether every target is within the tolerances and inside the limits, by Pinocchio.
         claimed: Whether the method says that it is.
         status: How it ended, in the method's words.
@@ -51,9 +51,9 @@ class Trial:
     robot: str
     case: str
     method: str
-    target: int
+    task: int
     seed: int
-    allowed: int
+    budget: int
     solved: bool = False
     met: bool = False
     claimed: bool = False
@@ -69,13 +69,13 @@ class Trial:
 
     @property
     def key(self) -> tuple[str, str, str, int, int]:
-        """What names it."""
-        return self.robot, self.case, self.method, self.target, self.seed
+        """Its identity."""
+        return self.robot, self.case, self.method, self.task, self.seed
 
     @property
     def name(self) -> str:
-        """What names it, as one word that ``pin-metaik replay`` takes."""
-        return f"{self.robot}/{self.case}/{self.target}/{self.method}/{self.seed}"
+        """Its identity as one word that ``pin-metaik replay`` takes."""
+        return f"{self.robot}/{self.case}/{self.task}/{self.method}/{self.seed}"
 
     @property
     def reproducible(self) -> dict[str, Any]:
@@ -88,8 +88,8 @@ class Trial:
 
     @staticmethod
     @checked
-    def of(row: Mapping[str, Any]) -> Trial:
-        """What ``row`` made, read back from JSON."""
+    def from_row(row: Mapping[str, Any]) -> Trial:
+        """A trial from a row read back from JSON."""
         fields = Trial.__dataclass_fields__
         if wrong := fields.keys() ^ row.keys():
             raise InvalidSetting(f"a row of a comparison has the keys {', '.join(fields)}, and {min(wrong)!r} differs")
@@ -107,13 +107,13 @@ def generator(rng: int, *path: str | int) -> np.random.Generator:
     return np.random.default_rng(sequence(rng, *path))
 
 
-def attempt(robot: str, case: Case, task: Task, method: Method, target: int, seed: int, budget: int, rng: int) -> Trial:
-    """Let a method try a task. What it raises becomes a row; ``KeyboardInterrupt`` comes through.
+def attempt(robot: str, case: Case, task: Task, method: Method, number: int, seed: int, budget: int, rng: int) -> Trial:
+    """Let a method try the task of a number. An exception becomes a row; ``KeyboardInterrupt`` is raised.
 
     All methods start a repetition from the same coordinates.
     """
-    path = (robot, case.name, target, seed)
-    row = Trial(robot, case.name, method.name, target, seed, budget * len(task.targets))
+    path = (robot, case.name, number, seed)
+    row = Trial(robot, case.name, method.name, number, seed, budget * len(task.targets))
     began = process_time()
     try:
         start = task.chain.box.sample(generator(rng, *path), 1)[0] if task.start is None else task.start
@@ -126,12 +126,12 @@ def attempt(robot: str, case: Case, task: Task, method: Method, target: int, see
         seconds = process_time() - began
         verdicts = [problem.verdict(task.chain.q(a.x)) for problem, a in zip(problems, answers, strict=True)]
         return _judged(row, case, task, Attempt(start, answers, verdicts), _curve(answers, budget), seconds)
-    except Exception as error:  # a method, or a case, of anybody: the others go on
+    except Exception as error:  # raised by a user's method or case: the others go on
         return failed(row, error, process_time() - began)
 
 
 def _answered(method: Method, problem: IKProblem, x: Array, budget: int, rng: np.random.Generator) -> Answer:
-    """What a method says; while that collides, it gets random starts and what is left of the budget to find another."""
+    """A method's answer; while it collides, the method is called again from a random start within the budget."""
     answer = method.solve(problem, x.copy(), budget, rng)
     spent = answer.evaluations
     while spent is not None and spent < budget and problem.verdict(problem.chain.q(answer.x)).collides:
@@ -149,13 +149,13 @@ def failed(row: Trial, error: Exception, seconds: float = 0.0) -> Trial:
 def _judged(
     row: Trial, case: Case, task: Task, done: Attempt, curve: tuple[float | None, ...] | None, seconds: float
 ) -> Trial:
-    """The row of a trial that came to an end; who spends more than was allowed has not solved it."""
-    told = [answer.evaluations for answer in done.answers if answer.evaluations is not None]
-    spent = sum(told) if len(told) == len(done.answers) else None
+    """The row of a trial that came to an end; one over its budget has not solved its task."""
+    reported = [answer.evaluations for answer in done.answers if answer.evaluations is not None]
+    spent = sum(reported) if len(reported) == len(done.answers) else None
     last = done.X[-1]
     return replace(
         row,
-        solved=(spent is None or spent <= row.allowed) and bool(case.judge(task, done)),
+        solved=(spent is None or spent <= row.budget) and bool(case.judge(task, done)),
         met=done.reached,
         claimed=all(answer.claimed for answer in done.answers),
         status=done.answers[-1].status,

@@ -30,7 +30,7 @@ def wilson(successes: int, trials: int) -> tuple[float, float]:
 
 
 def ecdf(spent: ArrayLike, at: ArrayLike) -> Array:
-    """The share of trials that were done at ``at`` (m,) or less; those that never were have spent ``inf``."""
+    """The share of trials that were solved within ``at`` (m,) evaluations; unsolved trials have spent ``inf``."""
     sorted_spent = np.sort(np.asarray(spent, dtype=float))
     share: Array = np.searchsorted(sorted_spent, np.asarray(at, dtype=float), side="right") / max(1, len(sorted_spent))
     return share

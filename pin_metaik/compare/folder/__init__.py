@@ -1,0 +1,1 @@
+"""The folder of a comparison: manifest, rows, files of robots, environment, lock."""

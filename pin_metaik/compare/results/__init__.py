@@ -1,0 +1,1 @@
+"""The rows of a comparison, arranged for statistics, and the tests that compare methods."""

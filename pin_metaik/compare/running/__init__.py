@@ -1,0 +1,1 @@
+"""Running a comparison, or one of its trials again."""
