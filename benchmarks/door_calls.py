@@ -529,7 +529,13 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.Target.residual": lambda: {"at": placed()},
     "mik.Target.met": lambda: {"at": placed()},
     "mik.Target.judge": lambda: {"placement": POSE},
-    "mik.load_robot": lambda: {"name": "rv7fl", "parameters": None, "free_flyer": False, "mimic": True},
+    "mik.load_robot": lambda: {
+        "name": "rv7fl",
+        "parameters": None,
+        "free_flyer": False,
+        "planar": False,
+        "mimic": True,
+    },
     "mik.minimize": lambda: {
         "objective": half,
         "box": optimize.Box([-1.0], [1.0]),
