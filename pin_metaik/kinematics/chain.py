@@ -30,7 +30,7 @@ from pin_metaik.kinematics.model import (
     neutral_inside,
 )
 from pin_metaik.kinematics.own_limits import with_own
-from pin_metaik.kinematics.paths import Motion, base_moves, chain_arrays, leader_of, motion_of
+from pin_metaik.kinematics.paths import Motion, base_moves, chain_arrays, leader_of, motions_of
 from pin_metaik.kinematics.proofs.arm import WHOLE, Free, ProofArm, proof_arm
 from pin_metaik.kinematics.proofs.boxes import TINY, Boxes
 from pin_metaik.kinematics.proofs.closed_forms import ClosedFormProof
@@ -132,9 +132,8 @@ class Chain:
 
         held = {leader_of(model, joint_id(model, name)) for name in locked}
         on_path = {j for f in self.frame_ids for j in list(model.supports[model.frames[f].parentJoint])[1:]}
-        motions = {j: motion_of(model, j) for j in sorted(on_path - held)}
-        motions = {j: motion for j, motion in motions.items() if motion.driver not in held}
-        drivers = sorted({motion.driver for motion in motions.values()}, key=lambda j: int(model.joints[j].idx_v))
+        motions = {j: motions_of(model, j) for j in sorted(on_path - held) if leader_of(model, j) not in held}
+        drivers = sorted({leader_of(model, j) for j in motions}, key=lambda j: int(model.joints[j].idx_v))
         for name, f in zip(self.frames, self.frame_ids, strict=True):
             if not motions.keys() & set(model.supports[model.frames[f].parentJoint]):
                 raise FixedFrame(
@@ -160,11 +159,13 @@ class Chain:
         self._original, self._elsewhere, self._lock = self, dict[bytes, Chain](), Lock()
         self._hold(self.configuration(neutral_inside(model) if reference is None else reference))
 
-    def _limits(self, motions: dict[int, Motion], drivers: list[int], given: dict[str, tuple[float, float]]) -> Limits:
+    def _limits(
+        self, motions: dict[int, tuple[Motion, ...]], drivers: list[int], given: dict[str, tuple[float, float]]
+    ) -> Limits:
         """Limits of the coordinates, with those of the caller for them or for joints that follow them."""
         model = self.model
         followers = self.movers.difference(drivers)
-        alike = {j for j in followers if j in motions and motions[j].rotates and motions[j].scale == 1.0}
+        alike = {j for j in followers if [(m.rotates, m.scale) for m in motions.get(j, ())] == [(True, 1.0)]}
         mimicked = {leader_of(model, j) for j in followers - alike}
         own = {name: span for name, span in given.items() if name not in {model.names[j] for j in followers}}
         limits = with_own(limits_of(model, drivers, self.names, mimicked), own)

@@ -78,17 +78,17 @@ class Limits:
     @property
     def periodic(self) -> NDArray[np.bool_]:
         """(n,) True for a coordinate that returns after a turn and has no limits: a continuous joint."""
-        return self.rotates & np.isinf(self.lower) & np.isinf(self.upper)
+        return self.winds & np.isinf(self.lower) & np.isinf(self.upper)
 
     def box(self) -> Box:
-        """The finite box to sample in: the limits, or one turn where a rotating joint has none.
+        """The finite box to sample in: the limits, or one turn where a joint has none that is the same after a turn.
 
         Raises:
-            InvalidBounds: If a sliding joint has no finite limits: there is no natural range to search.
+            InvalidBounds: If any other joint has no finite limits: there is no natural range to search.
         """
         lower, upper = self.lower.copy(), self.upper.copy()
         for i in np.flatnonzero(np.isinf(lower) | np.isinf(upper)):
-            if not self.rotates[i]:
+            if not self.winds[i]:
                 raise InvalidBounds(
                     f"joint {self.names[i]!r} has limits [{lower[i]}, {upper[i]}]: a search needs finite ones; "
                     f"pass them with Chain(..., limits={{{self.names[i]!r}: (lower, upper)}})"

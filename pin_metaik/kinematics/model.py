@@ -13,7 +13,7 @@ from pin_metaik.arguments import array, shown
 from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSetting, UnknownName
 from pin_metaik.kinematics.coordinates import Coordinates, consecutive
 from pin_metaik.kinematics.limits import Limits, finite_or_infinite
-from pin_metaik.kinematics.paths import motion_of
+from pin_metaik.kinematics.paths import motions_of
 
 UNIT = 1e-6  # by how much the length of a quaternion may differ from 1
 
@@ -119,8 +119,10 @@ def limits_of(model: pin.Model, drivers: list[int], names: tuple[str, ...], mimi
     lower = finite_or_infinite([model.lowerPositionLimit[model.joints[j].idx_q] for j in drivers])
     upper = finite_or_infinite([model.upperPositionLimit[model.joints[j].idx_q] for j in drivers])
     velocity = finite_or_infinite([model.upperVelocityLimit[model.joints[j].idx_v] for j in drivers])
-    turns = np.array([motion_of(model, j).rotates for j in drivers])
+    motions = [motions_of(model, j) for j in drivers]
+    turns = np.array([parts[0].rotates for parts in motions])
+    alone = np.array([len(parts) == 1 for parts in motions])  # a turn that slides, too, is not undone by a whole turn
     pair = np.array([model.joints[j].nq == 2 for j in drivers])
     lower[pair], upper[pair] = -np.inf, np.inf
-    winds = turns & (upper - lower >= 2.0 * np.pi) & [j not in mimicked for j in drivers]
+    winds = turns & alone & (upper - lower >= 2.0 * np.pi) & [j not in mimicked for j in drivers]
     return Limits(lower, upper, velocity, turns, winds, names)

@@ -34,7 +34,7 @@ class ChainArrays:
 
 @dataclass(frozen=True)
 class Motion:
-    """How a joint follows a coordinate: along or about ``axis`` by ``scale x + shift``.
+    """How a joint, or a part of its motion, follows a coordinate: along or about ``axis`` by ``scale x + shift``.
 
     Attributes:
         driver: Id of the joint whose coordinate is followed: the joint itself, or the one it mimics.
@@ -58,11 +58,13 @@ def leader_of(model: pin.Model, joint: int) -> int:
     return next(j for j in range(1, model.njoints) if model.joints[j].nv and model.joints[j].idx_v == kind.idx_v)
 
 
-def motion_of(model: pin.Model, joint: int) -> Motion:
-    """Axis and kind of a joint with one degree of freedom, read from its motion subspace S.
+def motions_of(model: pin.Model, joint: int) -> tuple[Motion, ...]:
+    """The turns and slides that a joint with one degree of freedom is made of, read from its motion subspace S.
+
+    A revolute joint is a turn, a prismatic one a slide, a helical one both along one axis.
 
     Raises:
-        UnsupportedJoint: If it has more than one degree of freedom, or turns and slides at once.
+        UnsupportedJoint: If it has more than one degree of freedom, or its slide is not along the axis of its turn.
     """
     kind = model.joints[joint]
     driver, scale, shift = leader_of(model, joint), 1.0, 0.0
@@ -77,12 +79,18 @@ def motion_of(model: pin.Model, joint: int) -> Motion:
         )
     subspace = _constant_subspace(model, joint)
     linear, angular = subspace[:3], subspace[3:]
-    reach, turn = float(np.linalg.norm(linear)), float(np.linalg.norm(angular))
-    if (reach > 0.0) == (turn > 0.0):
-        raise UnsupportedJoint(f"joint {model.names[joint]!r} ({kind.shortname()}) neither only turns nor only slides")
+    slide, turn = float(np.linalg.norm(linear)), float(np.linalg.norm(angular))
     # Pinocchio's S of a mimic joint carries the scale, which is kept apart here.
-    axis = (angular if turn else linear) / (max(reach, turn) * np.sign(scale))
-    return Motion(driver, axis, turn > 0.0, scale, shift)
+    unit = (turn or slide) * np.sign(scale)
+    axis = (angular if turn else linear) / unit
+    if not turn or not slide:
+        return (Motion(driver, axis, turn > 0.0, scale, shift),)
+    pitch = float(linear @ axis) / unit  # m/rad
+    if np.linalg.norm(linear / unit - pitch * axis) > RIGID:
+        raise UnsupportedJoint(
+            f"joint {model.names[joint]!r} ({kind.shortname()}) slides across the axis that it turns about"
+        )
+    return Motion(driver, axis, True, scale, shift), Motion(driver, axis, False, pitch * scale, pitch * shift)
 
 
 def _constant_subspace(model: pin.Model, joint: int) -> NDArray[np.float64]:
@@ -144,7 +152,7 @@ def chain_arrays(
     data: pin.Data,
     frames: Sequence[int],
     columns: dict[int, int],
-    motions: dict[int, Motion],
+    motions: dict[int, tuple[Motion, ...]],
     reference: NDArray[np.float64],
 ) -> ChainArrays:
     """Walk from the world to each frame; joints without a column are folded in where ``reference`` (nq,) has them."""
@@ -153,16 +161,15 @@ def chain_arrays(
     for frame in frames:
         placement = pin.SE3.Identity()
         for joint in list(model.supports[model.frames[frame].parentJoint])[1:]:
-            motion = motions.get(joint)
-            if motion is None:
+            if joint not in motions:
                 placement = placement * data.liMi[joint]
                 continue
-            turn = turned_to_z(motion.axis)
-            joints.append(
-                np.append(flat(placement * model.jointPlacements[joint] * turn), [motion.scale, motion.shift])
-            )
-            wiring.append((columns[motion.driver], int(motion.rotates)))
-            placement = turn.inverse()
+            placement = placement * model.jointPlacements[joint]
+            for motion in motions[joint]:
+                turn = turned_to_z(motion.axis)
+                joints.append(np.append(flat(placement * turn), [motion.scale, motion.shift]))
+                wiring.append((columns[motion.driver], int(motion.rotates)))
+                placement = turn.inverse()
         ends.append(len(joints))
         tips.append(flat(placement * model.frames[frame].placement))
     return ChainArrays(

@@ -114,12 +114,41 @@ def test_several_frames_share_coordinates() -> None:
             assert_allclose(pose, placement.homogeneous, atol=1e-12)
 
 
-def test_a_helical_joint_and_a_composite_one_are_refused_by_what_they_do() -> None:
-    helical = pin.Model()
-    helical.addJoint(0, pin.JointModelHZ(0.1), pin.SE3.Identity(), "screw")
-    helical.addFrame(pin.Frame("tip", 1, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME))
-    with pytest.raises(UnsupportedJoint, match="'screw'"):
-        mik.Chain(helical, "tip")
+def screws(pitch: float = 0.1, lower: float = -9.0, upper: float = 9.0) -> pin.Model:
+    """A helical joint, with joints before and after it."""
+    model = pin.Model()
+    kinds = pin.JointModelRX(), pin.JointModelHelicalUnaligned(np.array([0.0, 0.6, -0.8]), pitch), pin.JointModelPY()
+    for joint, kind in enumerate(kinds):
+        model.addJoint(joint, kind, pin.SE3(np.eye(3), np.array([0.1, 0.2, 0.3])), f"joint_{joint + 1}")
+    model.lowerPositionLimit, model.upperPositionLimit = np.array([-2.0, lower, -0.3]), np.array([2.0, upper, 0.4])
+    model.addFrame(
+        pin.Frame("tip", 3, 0, pin.SE3(pin.utils.rotate("y", 0.4), np.array([0.1, 0.0, 0.3])), pin.FrameType.OP_FRAME)
+    )
+    return model
+
+
+def test_a_helical_joint_turns_and_slides_as_pinocchio_has_it() -> None:
+    chain = mik.Chain(screws(), "tip")
+    assert chain.n == 3
+    assert len(chain.paths.joints) == 4
+    assert not chain.limits.winds[1]  # after a whole turn it is somewhere else
+    for x in chain.box.sample(np.random.default_rng(0), 50):
+        (placement,) = chain.placements(chain.q(x))
+        assert_allclose(chain.poses([x])[0, 0], placement.homogeneous, atol=1e-12)
+        problem = mik.IKProblem.of(chain, placement)
+        result = mik.solve_ik(chain, placement)
+        assert result.success
+        assert result.verify()
+        slopes = [(problem.linearize(x + h)[0] - problem.linearize(x - h)[0]) / 2e-6 for h in 1e-6 * np.eye(3)]
+        assert_allclose(problem.linearize(x)[1], slopes, atol=1e-6)
+    (far,) = chain.placements(chain.q([0.0, 0.0, 0.0]))
+    far.translation = far.translation + np.array([0.0, 3.0, 0.0])
+    assert mik.solve_ik(chain, far).status is mik.IKStatus.UNREACHABLE
+
+
+def test_a_helical_joint_without_limits_has_no_range_to_search() -> None:
+    with pytest.raises(InvalidBounds, match="'joint_2'"):
+        mik.solve_ik(mik.Chain(screws(lower=-np.inf, upper=np.inf), "tip"), [0.1, 0.2, 0.3])
 
 
 def test_errors_name_what_would_have_worked() -> None:
