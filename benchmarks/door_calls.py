@@ -421,6 +421,8 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.Chain.q": lambda: {"x": X6, "q0": np.zeros(6)},
     "mik.Chain.x": lambda: {"q": X6},
     "mik.Chain.configuration": lambda: {"q": X6},
+    "mik.Chain.tangent": lambda: {"x": np.array(X6)},
+    "mik.Chain.keeps_limits": lambda: {"q": np.array(X6)},
     "mik.Chain.inside": lambda: {"q": np.array(X6)},
     "mik.Chain.branches": lambda: {"pose": POSE.homogeneous, "x0": np.array(X6)},
     "mik.Chain.sample": lambda: {"count": 3, "seed": (0, 1)},

@@ -291,7 +291,7 @@ class IKProblem:
         """Judge a configuration q (nq,) with Pinocchio's forward kinematics, the limits, and coal."""
         q = array("q", q, self.chain.model.nq, error=InvalidConfiguration, finite=False)
         position = orientation = 0.0
-        accepted = self.chain.limits.contains(self.chain.coordinates.read(q))
+        accepted = self.chain.keeps_limits(q)
         for target, placement in zip(self.targets, self.chain._placed(q), strict=True):
             judged = target.judge(placement)
             position = max(position, judged.position_error)

@@ -15,6 +15,7 @@ from pin_metaik.arguments import array, checked, shown
 from pin_metaik.errors import FixedFrame, InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.kinematics.closed_form import NOMINAL, closed_form
 from pin_metaik.kinematics.frame_fk import FrameFK, PinocchioData
+from pin_metaik.kinematics.joints import Parts, leader_of, parts_of
 from pin_metaik.kinematics.kernel.layout import LEAF, REACH, Entries, Floats, Ints, Packed, Samples, pack
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.model import (
@@ -27,10 +28,11 @@ from pin_metaik.kinematics.model import (
     joint_id,
     limits_of,
     model_of,
+    names_of,
     neutral_inside,
 )
 from pin_metaik.kinematics.own_limits import with_own
-from pin_metaik.kinematics.paths import Motion, base_moves, chain_arrays, leader_of, motions_of
+from pin_metaik.kinematics.paths import base_moves, chain_arrays
 from pin_metaik.kinematics.proofs.arm import WHOLE, Free, ProofArm, proof_arm
 from pin_metaik.kinematics.proofs.boxes import TINY, Boxes
 from pin_metaik.kinematics.proofs.closed_forms import ClosedFormProof
@@ -44,6 +46,7 @@ from pin_metaik.robots.pickling import reduce_model
 if TYPE_CHECKING:
     from pin_metaik.kinematics.kernel.entry import Kernels
 
+NUDGE = 1e-5  # rad or m, of the differences that stand in for derivatives of quaternions
 RESTARTS = 256  # random starts of the pose solver
 REMEMBERED = 16  # sets of samples kept, and chains whose held joints are elsewhere
 REMADE = 16  # chains kept that came out of pickles
@@ -74,15 +77,16 @@ class PoseSolver(NamedTuple):
 class Chain:
     """The joints on the way to one or several frames of a ``pin.Model``, as n coordinates with limits.
 
-    A coordinate is a revolute, prismatic or continuous joint; joints that mimic another follow it; everything else is
-    held. ``paths``, ``poses``, ``reach``, ``sample_table`` and ``branches`` are valid for the held joints at
-    ``reference``; ``at(q)`` is the same chain with the held joints at q, and solvers work on that one. The model is
-    read, never written to.
+    A coordinate is a revolute, prismatic, continuous or helical joint, or one of the turns and slides of a joint with
+    several: a floating base is ``root_joint.x``, ``.y``, ``.z``, ``.yaw``, ``.pitch`` and ``.roll``. Joints that mimic
+    another follow it; everything else is held. ``paths``, ``poses``, ``reach``, ``sample_table`` and ``branches`` are
+    valid for the held joints at ``reference``; ``at(q)`` is the same chain with the held joints at q, and solvers work
+    on that one. The model is read, never written to.
 
     Attributes:
         model: The model.
         frames: Names of the T frames.
-        names: Names of the n joints, one a coordinate.
+        names: Names of the n coordinates: the joint's, and of a joint with several which of them.
         limits: Their limits.
         reference: (nq,) the configuration that joints outside the chain are held at.
         held: Entries of a configuration that place the frames but are no coordinates: those of joints on the way that
@@ -117,7 +121,7 @@ class Chain:
         Raises:
             FrameNotFound: If the model has no such frame.
             FixedFrame: If no joint is left that moves it.
-            UnsupportedJoint: If a joint on the way has several degrees of freedom (lock it), or no single axis.
+            UnsupportedJoint: If a joint on the way is not made of turns and slides about fixed axes (lock it).
             UnknownName: If a locked joint does not exist.
             InvalidBounds: If limits are crossed or NaN, or those of joints that move together leave no room.
             InvalidConfiguration: If ``reference`` is not a configuration of the model.
@@ -132,26 +136,30 @@ class Chain:
 
         held = {leader_of(model, joint_id(model, name)) for name in locked}
         on_path = {j for f in self.frame_ids for j in list(model.supports[model.frames[f].parentJoint])[1:]}
-        motions = {j: motions_of(model, j) for j in sorted(on_path - held) if leader_of(model, j) not in held}
+        parts = {j: parts_of(model, j) for j in sorted(on_path - held) if leader_of(model, j) not in held}
+        motions = {j: part.motions for j, part in parts.items()}
         drivers = sorted({leader_of(model, j) for j in motions}, key=lambda j: int(model.joints[j].idx_v))
+        parts |= {j: parts_of(model, j) for j in drivers if j not in parts}
         for name, f in zip(self.frames, self.frame_ids, strict=True):
             if not motions.keys() & set(model.supports[model.frames[f].parentJoint]):
                 raise FixedFrame(
                     f"no joint moves frame {name!r}" + (f" while {sorted(locked)} are locked" if held else "")
                 )
 
-        self.names = tuple(model.names[j] for j in drivers)
-        self.coordinates = coordinates_of(model, drivers)
+        self.names = names_of(model, drivers, parts)
+        self.coordinates = coordinates_of(model, drivers, parts)
         self.movers = frozenset(j for j in range(1, model.njoints) if leader_of(model, j) in drivers)
-        self.limits = self._limits(motions, drivers, dict(limits or {}))
+        self.limits = self._limits(parts, drivers, dict(limits or {}))
         self._held_joints = sorted({leader_of(model, j) for j in on_path - motions.keys()})
         self._held = entries_of(model, self._held_joints)
         self.held = tuple(self._held.tolist())
-        self._motions, self._columns = motions, {j: c for c, j in enumerate(drivers)}
+        self._motions, self._columns = motions, dict[int, int]()
+        for column, joint in enumerate(self.coordinates.joints.tolist()):
+            self._columns.setdefault(joint, column)
         plain, entries = self.coordinates.plain, self.coordinates.plain_q
         self._least, self._most = np.full(model.nq, -np.inf), np.full(model.nq, np.inf)
         self._least[entries], self._most[entries] = self.limits.lower[plain], self.limits.upper[plain]
-        self.has_pose_solver = len(self.frames) == 1 and not self.limits.rigid
+        self.has_pose_solver = len(self.frames) == 1 and not self.limits.rigid and self.coordinates.single
         self.kernels = _kernels()
         self._own = PinocchioData(model)
         self.tip = FrameFK(model, self.frame_ids[0])
@@ -159,16 +167,16 @@ class Chain:
         self._original, self._elsewhere, self._lock = self, dict[bytes, Chain](), Lock()
         self._hold(self.configuration(neutral_inside(model) if reference is None else reference))
 
-    def _limits(
-        self, motions: dict[int, tuple[Motion, ...]], drivers: list[int], given: dict[str, tuple[float, float]]
-    ) -> Limits:
+    def _limits(self, parts: dict[int, Parts], drivers: list[int], given: dict[str, tuple[float, float]]) -> Limits:
         """Limits of the coordinates, with those of the caller for them or for joints that follow them."""
         model = self.model
         followers = self.movers.difference(drivers)
-        alike = {j for j in followers if [(m.rotates, m.scale) for m in motions.get(j, ())] == [(True, 1.0)]}
+        alike = {
+            j for j in followers if j in parts and [(m.rotates, m.scale) for m in parts[j].motions] == [(True, 1.0)]
+        }
         mimicked = {leader_of(model, j) for j in followers - alike}
         own = {name: span for name, span in given.items() if name not in {model.names[j] for j in followers}}
-        limits = with_own(limits_of(model, drivers, self.names, mimicked), own)
+        limits = with_own(limits_of(model, drivers, parts, mimicked), own)
         for j in followers:
             if model.names[j] in given:
                 mimic = model.joints[j].extract()
@@ -260,9 +268,34 @@ class Chain:
         """A configuration (nq,) of the caller: checked, and with every joint brought inside its limits.
 
         Raises:
-            InvalidConfiguration: If its length is not nq or an entry is not finite.
+            InvalidConfiguration: If its length is not nq, an entry is not finite, or a quaternion has not length 1.
         """
-        return np.minimum(np.maximum(as_configuration(self.model, q), self._least), self._most)
+        inside = np.minimum(np.maximum(as_configuration(self.model, q), self._least), self._most)
+        if not self.coordinates.single:
+            check_turns(self.model, sorted(self._columns), inside)
+            self.coordinates.write(self.limits.clip(self.coordinates.read(inside)), inside)
+        return inside
+
+    def tangent(self, x: ArrayLike) -> NDArray[np.float64]:
+        """(nv, n) Pinocchio's velocity per velocity of each coordinate at x (n,), by which a Jacobian is multiplied."""
+        x, model = array("x", x, self.n, error=InvalidConfiguration), self.model
+        T = np.zeros((model.nv, self.n))
+        for c, joint in enumerate(self.coordinates.joints.tolist()):
+            kind = model.joints[joint]
+            if kind.nv == 1:
+                T[kind.idx_v, c] = 1.0
+            else:
+                h = NUDGE * np.eye(self.n)[c]
+                T[:, c] = pin.difference(model, self.q(x - h), self.q(x + h)) / (2.0 * NUDGE)
+        return T
+
+    def keeps_limits(self, q: NDArray[np.float64]) -> bool:
+        """Whether q (nq,) is inside the limits; an angle read from a cosine or a quaternion, to within 1e-12 rad."""
+        x, rounding = self.coordinates.read(self._like("q", q, (self.model.nq,))), self.coordinates.rounding
+        if rounding is None:
+            return self.limits.contains(x)
+        limits = self.limits
+        return bool(((limits.lower - rounding <= x) & (x <= limits.upper + rounding)).all())
 
     def inside(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
         """The nearest configurations inside the limits to q (..., nq); pairs and quaternions are left alone."""
@@ -374,9 +407,7 @@ class Chain:
         return self._packed(reach, self.form, samples)
 
     def _packed(self, reach: Floats, form: Floats, samples: Samples) -> Floats:
-        joints = [self.model.joints[int(j)] for j in self.coordinates.joints]
-        places = np.array([(joint.idx_q, joint.nq == 2) for joint in joints], dtype=np.int64)
-        entries = Entries(self._least, self._most, places)
+        entries = Entries(self._least, self._most, self.coordinates.places)
         return pack(Packed(self.paths.arrays, self.limits.arrays, entries, reach, form), samples)
 
     @cached_property

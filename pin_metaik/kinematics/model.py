@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import array, shown
 from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSetting, UnknownName
 from pin_metaik.kinematics.coordinates import Coordinates, consecutive
+from pin_metaik.kinematics.joints import RIGHT, Entry, Parts
 from pin_metaik.kinematics.limits import Limits, finite_or_infinite
-from pin_metaik.kinematics.paths import motions_of
 
 UNIT = 1e-6  # by how much the length of a quaternion may differ from 1
 
@@ -100,29 +100,47 @@ def joint_id(model: pin.Model, name: str) -> int:
     return int(model.getJointId(name))
 
 
-def coordinates_of(model: pin.Model, drivers: list[int]) -> Coordinates:
-    """The coordinates of joints given by id."""
-    columns = np.arange(len(drivers))
-    entry = np.array([model.joints[j].idx_q for j in drivers], dtype=np.int64)
-    circular = np.array([model.joints[j].nq == 2 for j in drivers], dtype=bool)
-    return Coordinates(
-        np.array(drivers, dtype=np.int64),
-        consecutive(columns[~circular]),
-        consecutive(entry[~circular]),
-        columns[circular],
-        entry[circular],
-    )
+def coordinates_of(model: pin.Model, drivers: list[int], parts: dict[int, Parts]) -> Coordinates:
+    """The coordinates of joints given by id, in order."""
+    joints: list[int] = []
+    places: dict[Entry, list[tuple[int, int]]] = {kind: [] for kind in Entry}  # columns of x and entries of q
+    for driver in drivers:
+        entry = int(model.joints[driver].idx_q)
+        for kind in parts[driver].entries:
+            places[kind].append((len(joints), entry))
+            entry += kind.value
+            joints += [driver] * (3 if kind is Entry.QUATERNION else 1)
+    numbers, circles, turns = (np.array(places[kind], dtype=np.int64).reshape(-1, 2).T for kind in Entry)
+    plain, plain_q = consecutive(numbers[0]), consecutive(numbers[1])
+    return Coordinates(np.array(joints, dtype=np.int64), plain, plain_q, *circles, *turns)
 
 
-def limits_of(model: pin.Model, drivers: list[int], names: tuple[str, ...], mimicked: set[int]) -> Limits:
-    """Limits of the driving joints. A ``mimicked`` joint is not multi-turn, because its followers may not be."""
-    lower = finite_or_infinite([model.lowerPositionLimit[model.joints[j].idx_q] for j in drivers])
-    upper = finite_or_infinite([model.upperPositionLimit[model.joints[j].idx_q] for j in drivers])
-    velocity = finite_or_infinite([model.upperVelocityLimit[model.joints[j].idx_v] for j in drivers])
-    motions = [motions_of(model, j) for j in drivers]
-    turns = np.array([parts[0].rotates for parts in motions])
-    alone = np.array([len(parts) == 1 for parts in motions])  # a turn that slides, too, is not undone by a whole turn
-    pair = np.array([model.joints[j].nq == 2 for j in drivers])
-    lower[pair], upper[pair] = -np.inf, np.inf
-    winds = turns & alone & (upper - lower >= 2.0 * np.pi) & [j not in mimicked for j in drivers]
-    return Limits(lower, upper, velocity, turns, winds, names)
+def names_of(model: pin.Model, drivers: list[int], parts: dict[int, Parts]) -> tuple[str, ...]:
+    """A name for each coordinate: the joint's, and of a joint with several which of them, as in ``root_joint.x``."""
+    return tuple(f"{model.names[j]}.{name}" if name else model.names[j] for j in drivers for name in parts[j].names)
+
+
+def limits_of(model: pin.Model, drivers: list[int], parts: dict[int, Parts], mimicked: set[int]) -> Limits:
+    """Their limits; those ``mimicked`` do not wind, for the joints that follow them might not."""
+    lower, upper, velocity, turns, winds = list[float](), list[float](), list[float](), list[bool](), list[bool]()
+    for j in drivers:
+        entry, rotates = int(model.joints[j].idx_q), {m.part: m.rotates for m in reversed(parts[j].motions)}
+        for kind in parts[j].entries:
+            match kind:
+                case Entry.NUMBER:
+                    lower.append(model.lowerPositionLimit[entry])
+                    upper.append(model.upperPositionLimit[entry])
+                case Entry.CIRCLE:
+                    lower.append(-np.inf)
+                    upper.append(np.inf)
+                case Entry.QUATERNION:
+                    lower += [-np.inf, -RIGHT, -np.inf]
+                    upper += [np.inf, RIGHT, np.inf]
+            entry += kind.value
+        count = len(parts[j].names)
+        velocity += model.upperVelocityLimit[model.joints[j].idx_v :][:count].tolist()
+        turns += [rotates[part] for part in range(count)]
+        winds += [rotates[part] and not parts[j].screw and j not in mimicked for part in range(count)]
+    low, high = finite_or_infinite(lower), finite_or_infinite(upper)
+    room = np.array(winds) & (high - low >= 2.0 * np.pi)
+    return Limits(low, high, finite_or_infinite(velocity), np.array(turns), room, names_of(model, drivers, parts))

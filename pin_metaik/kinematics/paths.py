@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from pin_metaik.errors import UnsupportedJoint
+from pin_metaik.kinematics.joints import Motion
 from pin_metaik.kinematics.kernel.layout import Arm
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -30,82 +30,6 @@ class ChainArrays:
     def arrays(self) -> Arm:
         """The four arrays as the compiled loops take them."""
         return Arm(self.joints, self.wiring, self.ends, self.tips)
-
-
-@dataclass(frozen=True)
-class Motion:
-    """How a joint, or a part of its motion, follows a coordinate: along or about ``axis`` by ``scale x + shift``.
-
-    Attributes:
-        driver: Id of the joint whose coordinate is followed: the joint itself, or the one it mimics.
-        axis: (3,) unit vector in the joint frame.
-        rotates: About the axis, else along it.
-    """
-
-    driver: int
-    axis: NDArray[np.float64]
-    rotates: bool
-    scale: float
-    shift: float
-
-
-def leader_of(model: pin.Model, joint: int) -> int:
-    """Id of the joint that a joint mimics, or its own."""
-    kind = model.joints[joint]
-    if kind.nq:
-        return joint
-    # A mimic joint is a scaled copy of the coordinate at the same index.
-    return next(j for j in range(1, model.njoints) if model.joints[j].nv and model.joints[j].idx_v == kind.idx_v)
-
-
-def motions_of(model: pin.Model, joint: int) -> tuple[Motion, ...]:
-    """The turns and slides that a joint with one degree of freedom is made of, read from its motion subspace S.
-
-    A revolute joint is a turn, a prismatic one a slide, a helical one both along one axis.
-
-    Raises:
-        UnsupportedJoint: If it has more than one degree of freedom, or its slide is not along the axis of its turn.
-    """
-    kind = model.joints[joint]
-    driver, scale, shift = leader_of(model, joint), 1.0, 0.0
-    if driver != joint:
-        mimic = kind.extract()
-        scale, shift = float(mimic.scaling), float(mimic.offset)
-    elif kind.nv != 1:
-        raise UnsupportedJoint(
-            f"joint {model.names[joint]!r} on the path has {kind.nv} degrees of freedom; chains move joints with one: "
-            f"hold it where the reference has it: Chain(..., locked=[{model.names[joint]!r}]) "
-            f"or --lock {model.names[joint]}"
-        )
-    subspace = _constant_subspace(model, joint)
-    linear, angular = subspace[:3], subspace[3:]
-    slide, turn = float(np.linalg.norm(linear)), float(np.linalg.norm(angular))
-    # Pinocchio's S of a mimic joint carries the scale, which is kept apart here.
-    unit = (turn or slide) * np.sign(scale)
-    axis = (angular if turn else linear) / unit
-    if not turn or not slide:
-        return (Motion(driver, axis, turn > 0.0, scale, shift),)
-    pitch = float(linear @ axis) / unit  # m/rad
-    if np.linalg.norm(linear / unit - pitch * axis) > RIGID:
-        raise UnsupportedJoint(
-            f"joint {model.names[joint]!r} ({kind.shortname()}) slides across the axis that it turns about"
-        )
-    return Motion(driver, axis, True, scale, shift), Motion(driver, axis, False, pitch * scale, pitch * shift)
-
-
-def _constant_subspace(model: pin.Model, joint: int) -> NDArray[np.float64]:
-    """S of a joint, after checking that the joint really moves by exp(S x) and so can be a chain's."""
-    data = model.createData()
-    q = pin.neutral(model)
-    pin.forwardKinematics(model, data, q)
-    subspace: NDArray[np.float64] = np.array(data.joints[joint].S).reshape(6)
-    start = data.joints[joint].M.copy()
-    step = np.zeros(model.nv)
-    step[model.joints[joint].idx_v] = 0.3
-    pin.forwardKinematics(model, data, pin.integrate(model, q, step))
-    if not data.joints[joint].M.isApprox(start * pin.exp6(pin.Motion(0.3 * subspace)), 1e-9):
-        raise UnsupportedJoint(f"joint {model.names[joint]!r} does not move along one fixed axis")
-    return subspace
 
 
 def turned_to_z(axis: NDArray[np.float64]) -> pin.SE3:
@@ -167,8 +91,8 @@ def chain_arrays(
             placement = placement * model.jointPlacements[joint]
             for motion in motions[joint]:
                 turn = turned_to_z(motion.axis)
-                joints.append(np.append(flat(placement * turn), [motion.scale, motion.shift]))
-                wiring.append((columns[motion.driver], int(motion.rotates)))
+                joints.append(np.append(flat(placement * motion.before * turn), [motion.scale, motion.shift]))
+                wiring.append((columns[motion.driver] + motion.part, int(motion.rotates)))
                 placement = turn.inverse()
         ends.append(len(joints))
         tips.append(flat(placement * model.frames[frame].placement))

@@ -149,8 +149,9 @@ def links_of(
             placement, travel, slack = np.eye(4), np.zeros(3), 0.0
         else:
             ends = row[SCALE] * np.array([lower[column], upper[column]]) + row[SHIFT]
-            travel = travel + ends.mean() * placement[:3, 2]
-            slack += 0.5 * float(abs(ends[1] - ends[0]))
+            if np.isfinite(ends).all():
+                travel = travel + ends.mean() * placement[:3, 2]
+            slack += 0.5 * float(abs(ends[1] - ends[0]))  # infinite without limits: then nothing bounds the reach
     placement = placement @ matrix_of(paths.tips[tip])
     placement[:3, 3] += travel
     return links, Link(placement[:3, 3], np.zeros(3), slack), placement

@@ -19,13 +19,15 @@ def farthest(chain: Chain, x: NDArray[np.float64], direction: NDArray[np.float64
     by g sin t + c (1 - cos t), where g = d (z x v), c = d (z x (z x v)), z is the axis and v leads from it to the tip.
     """
     model, data, frame = chain.model, chain.data, chain.frame_ids[0]
-    columns = [model.joints[int(j)].idx_v for j in chain.coordinates.joints]
     lower, upper, rotates = chain.box.lower, chain.box.upper, chain.limits.rotates
     x = x.copy()
     before = -np.inf
     for _ in range(SWEEPS):
         for i in range(chain.n):
-            J = pin.computeFrameJacobian(model, data, chain.q(x), frame, pin.LOCAL_WORLD_ALIGNED)[:, columns[i]]
+            J = (
+                pin.computeFrameJacobian(model, data, chain.q(x), frame, pin.LOCAL_WORLD_ALIGNED)
+                @ chain.tangent(x)[:, i]
+            )
             g, c = float(direction @ J[:3]), float(direction @ np.cross(J[3:], J[:3]))
             if not rotates[i]:
                 x[i] = upper[i] if g > 0.0 else lower[i]

@@ -85,13 +85,13 @@ class Push:
         rows, least = np.zeros((ROWS, problem.chain.n + 1)), np.full(ROWS, -np.inf)
         near = sorted(world.checker.near(q), key=lambda pair: pair.room)[:ROWS]
         model, data = problem.chain.model, problem.chain.data
-        columns = [int(model.joints[int(j)].idx_v) for j in problem.chain.coordinates.joints]
+        tangent = problem.chain.tangent(problem.chain.x(q))
         if near:
             pin.computeJointJacobians(model, data, q)
         for k, pair in enumerate(near):
             for joint, point, sign in zip(pair.joints, pair.points, (-1.0, 1.0), strict=True):
                 if joint:
-                    J = pin.getJointJacobian(model, data, joint, pin.LOCAL_WORLD_ALIGNED)[:, columns]
+                    J = pin.getJointJacobian(model, data, joint, pin.LOCAL_WORLD_ALIGNED) @ tangent
                     at_point = pin.SE3(NO_TURN, point - data.oMi[joint].translation)
                     rows[k, :-1] += sign * (at_point.act(pin.Force(pair.normal, NO_TORQUE)).vector @ J)
             rows[k, -1] = 1.0
