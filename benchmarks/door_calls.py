@@ -408,7 +408,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.Box.clip": lambda: {"X": np.zeros((3, 2))},
     "mik.Box.halfway": lambda: {"X": np.zeros((3, 2)), "origin": np.zeros((3, 2))},
     "mik.Box.contains": lambda: {"X": np.zeros((3, 2))},
-    "mik.Box.holds": lambda: {"X": np.zeros((3, 2))},
+    "mik.Box.contains_all": lambda: {"X": np.zeros((3, 2))},
     "mik.Budget": lambda: {"evaluations": 100, "seconds": 1.0, "target": 1e-3},
     "mik.Chain": lambda: {
         "model": ur5().model,
@@ -634,7 +634,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "learn.Network.jacobian": lambda: {"w": np.zeros(9), "X": data()[0]},
     "learn.Network.gradient": lambda: {"w": np.zeros(9), "X": data()[0], "y": data()[1]},
     "learn.Regressor.predict": lambda: {"X": data()[0]},
-    "learn.Regressor.knows": lambda: {"X": data()[0]},
+    "learn.Regressor.covers": lambda: {"X": data()[0]},
     "learn.Regressor.__call__": lambda: {"X": data()[0]},
     "learn.fit": lambda: {
         "X": data()[0],
@@ -974,7 +974,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mobile.FreeSpace.distance": lambda: {"path": path().points},
     "mobile.FreeSpace.check": lambda: {"role": "start", "point": (0.0, 0.0)},
     "mobile.LearnedTurn.tangent": lambda: {"v": 0.5, "theta": 1.0},
-    "mobile.LearnedTurn.knows": lambda: {"v": 0.5, "theta": 1.0},
+    "mobile.LearnedTurn.covers": lambda: {"v": 0.5, "theta": 1.0},
     "mobile.LearnedTurn.at": lambda: {"theta": np.array([1.0])},
     "mobile.LearnedTurn.errors": dict,
     "mobile.OccupancyGrid": lambda: {

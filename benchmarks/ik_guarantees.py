@@ -65,9 +65,8 @@ def all_solutions(robot: str, python: str, count: int) -> Row:
         ours += len(every)
         for x in solutions:
             if judged(chain, pose[None], [x])[0]:
-                away = every.x - np.array(x)
-                away -= np.where(chain.limits.winds, TURN * np.round(away / TURN), 0.0)
-                known, found = known + 1, found + bool((np.abs(away).max(axis=1) <= APART).any())
+                away = chain.limits.separation(every.x, np.array(x))
+                known, found = known + 1, found + bool((away.max(axis=1) <= APART).any())
     share = f"{found:,} of {known:,} that EAIK finds ({100.0 * found / known:.2f} %), {ours:,} in all"
     return f"`solve_ik_all`, {robot}, {count} poses", f"{share}; median {np.median(took):.1f} ms"
 

@@ -143,7 +143,7 @@ class Checker:
         """The distance at or below which a pair collides, m."""
         if own >= 0:
             return self._margins[own]
-        return self.padding.of(self._name(i), self._name(j)) if self.padding.by else self.padding.margin
+        return self.padding.between(self._name(i), self._name(j)) if self.padding.by else self.padding.margin
 
     @cached_property
     def _margins(self) -> list[float]:

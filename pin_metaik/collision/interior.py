@@ -84,16 +84,16 @@ class Interior:
             signs[c] = 1 - 2 * (int(around.sum()) % 2)
         return signs
 
-    def holds(self, pose: NDArray[np.float64], points: NDArray[np.float64], other: NDArray[np.float64]) -> bool:
+    def contains_any(self, pose: NDArray[np.float64], points: NDArray[np.float64], other: NDArray[np.float64]) -> bool:
         """Whether any of the points (k, 3) of another body is inside.
 
         Both poses are rotations column by column, then translations, (12,).
         """
-        from pin_metaik.collision.rays import holds
+        from pin_metaik.collision.rays import contains_any
 
         if not len(self.boxes):
             return False
-        return bool(holds(self.triangles, self.starts, self.boxes, self.signs, pose, points, other))
+        return bool(contains_any(self.triangles, self.starts, self.boxes, self.signs, pose, points, other))
 
 
 def _triangles_of(mesh: Any) -> NDArray[np.int64]:

@@ -131,7 +131,7 @@ def _sample(solids: Solids, pairs: Sequence[tuple[Body, Body]]) -> list[Sampled]
     levels = [(solids.levels[i], solids.levels[j]) for i, j in own.tolist()]
     Q = random_configurations(solids.model, np.random.default_rng(SEED), SAMPLES)
     padding = solids.padding
-    margins = np.array([padding.of(a.link, b.link) for a, b in pairs])
+    margins = np.array([padding.between(a.link, b.link) for a, b in pairs])
     built = [a.part and b.part and not padding.names(a.link, b.link) for a, b in pairs]
     if margins.any():
         near = _shares(solids, own, margins, [(a.hull, b.hull) for a, b in levels], Q) >= MOSTLY

@@ -68,7 +68,7 @@ class Padding:
     margin: float = 0.0
     by: Mapping[Key, float] = field(default_factory=dict)
 
-    def of(self, first: str, second: str) -> float:
+    def between(self, first: str, second: str) -> float:
         """The distance of two bodies, m."""
         if not self.by:
             return self.margin
@@ -86,7 +86,7 @@ class Padding:
     @property
     def pairs(self) -> Padding:
         """What was asked for pairs alone: of all others nothing, of these the same."""
-        return Padding(0.0, {key: self.of(*key) for key in self.by if not isinstance(key, str)})
+        return Padding(0.0, {key: self.between(*key) for key in self.by if not isinstance(key, str)})
 
     @cached_property
     def _most(self) -> dict[str, float]:

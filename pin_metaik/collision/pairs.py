@@ -38,7 +38,7 @@ def disabled_pairs(robot: Geometry, bodies: tuple[Body, ...], srdf: Srdf, paddin
     for pair, touch in touches(robot.model, bodies).items():
         if touch.always:
             disabled.setdefault(pair, "Always")
-        elif touch.gap > padding.of(*pair) + CLEAR:
+        elif touch.gap > padding.between(*pair) + CLEAR:
             disabled.setdefault(pair, "Never")
     return disabled
 

@@ -58,7 +58,7 @@ def enclosed(triangles: Floats, starts: Ints, boxes: Floats, points: Floats, ins
 
 
 @jit("b1(f8[:,::1], i8[::1], f8[:,::1], i8[::1], f8[::1], f8[:,::1], f8[::1])")
-def holds(
+def contains_any(
     triangles: Floats, starts: Ints, boxes: Floats, signs: Ints, pose: Floats, points: Floats, other: Floats
 ) -> bool:
     """Whether a solid has any of the points (k, 3) of another inside.

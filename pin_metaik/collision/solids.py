@@ -258,7 +258,7 @@ class Placed:
         assert mesh.mesh is not None
         interior: Interior = mesh.mesh.interior
         points = other.point if other.mesh is None else other.mesh.interior.points
-        return interior.holds(self.row(mesh.pose), points, self.row(other.pose))
+        return interior.contains_any(self.row(mesh.pose), points, self.row(other.pose))
 
     def row(self, pose: int) -> NDArray[np.float64]:
         """A pose as numbers (12,): rotation column by column, then translation."""

@@ -89,7 +89,7 @@ class Regressor:
         table = as_table("the inputs", X)
         if table.shape[1] != self.network.inputs:
             raise InvalidSetting(f"the network {self.network} takes {self.network.inputs} inputs, got {table.shape[1]}")
-        outside = ~self.knows(table)
+        outside = ~self.covers(table)
         if outside.any():
             warn(
                 f"{outside.sum()} of {len(table)} inputs lie outside the training range "
@@ -102,7 +102,7 @@ class Regressor:
         """Outputs (n,) for inputs X (n, d), without a word about their range."""
         return self.output.up(self.network.outputs(self.w, self.inputs.down(self._given(X)))[:, None])[:, 0]
 
-    def knows(self, X: Array) -> NDArray[np.bool_]:
+    def covers(self, X: Array) -> NDArray[np.bool_]:
         """Whether each of the inputs X (n, d) lies in the training range (n,)."""
         return np.asarray((np.abs(self.inputs.down(self._given(X))) <= 1 + EDGE).all(axis=1))
 

@@ -153,7 +153,7 @@ class AskTell:
         X, space, name = np.asarray(proposed, dtype=float), self.run.space, self._name
         if X.ndim != 2 or X.shape[1] != space.dimension or not len(X):
             raise InvalidSetting(f"{name} proposed points of shape {X.shape}: expected (k, {space.dimension}), k >= 1")
-        if not space.holds(X):
+        if not space.contains_all(X):
             outside = X[~space.contains(X)][0]
             raise InvalidSetting(f"{name} left the box with {outside}: clip its points, e.g. run.space.clip(X)")
         self._X: Array = X[: self.run.remaining]

@@ -96,7 +96,7 @@ class Box:
         inside: NDArray[np.bool_] = (self.clip(X) == X).all(axis=-1)
         return inside
 
-    def holds(self, X: Array) -> bool:
+    def contains_all(self, X: Array) -> bool:
         """Whether all of the points X (k, n) lie in the box."""
         return bool((self.clip(X) == X).all())
 

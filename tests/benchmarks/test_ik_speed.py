@@ -49,7 +49,7 @@ def test_it_measures_our_solver_and_says_why_a_peer_could_not_be_had(tmp_path: P
 def test_the_urdf_that_peers_get_moves_as_the_robot_does(robot: str, part: Callable[[str], ModuleType]) -> None:
     chain = chain_of(robot)
     serial = part("ik_serial").SerialArm
-    arm = serial.from_json(serial.of(robot, chain).to_json())
+    arm = serial.from_json(serial.of_chain(robot, chain).to_json())
     alone = mik.Chain(pin.buildModelFromXML(arm.urdf()), "tip")
     assert_array_equal(alone.box.lower, chain.box.lower)
     assert_array_equal(alone.box.upper, chain.box.upper)

@@ -24,7 +24,7 @@ from pin_metaik.compare.papers.aerial_arm_setup import (
     total_error,
 )
 from pin_metaik.compare.papers.aerial_arm_tables import at_the_walls, effort, inconsistent
-from pin_metaik.compare.papers.arm import Trial, hybrid, search
+from pin_metaik.compare.papers.arm import ArmTrial, hybrid, search
 
 ROW_1 = np.array([[-15.7365, 5.43, 52.57, 6.63, 12.66, 16.164]])  # printed poses, cm and degrees
 ROW_2 = np.array([[-21.183, 2.915, 50.77, -0.201, 10.01, 14.85]])
@@ -129,14 +129,14 @@ def test_with_freer_joints_every_posture_has_a_copy_a_quarter_turn_from_all_ends
 def test_angles_are_turned_back_to_the_same_posture():
     free = arm(FREE)
     x = free.box.sample(np.random.default_rng(3), 1)[0]
-    back = turned_back(Trial("row 1", str(TIMES), 1, 0, 0.0, x, 1, 0.1)).x
+    back = turned_back(ArmTrial("row 1", str(TIMES), 1, 0, 0.0, x, 1, 0.1)).x
     assert (np.abs(back) <= np.pi).all() and (np.abs(x) > np.pi).any()
     assert_allclose(poses(free, back[None]), poses(free, x[None]), atol=1e-10)
 
 
 def test_runs_at_the_walls_are_counted():
     def trial(cost, angle):
-        return Trial("row 1", str(TEXT), 1, 0, cost, np.radians([0, 0, angle, 0, 0, 0]), 1, 0.1)
+        return ArmTrial("row 1", str(TEXT), 1, 0, cost, np.radians([0, 0, angle, 0, 0, 0]), 1, 0.1)
 
     sentence = at_the_walls([trial(1.0, WALLS), trial(1.0, 10.0), trial(0.0, WALLS)])
     assert "Of the 2 runs that found no solution" in sentence and "1 ended with a joint" in sentence

@@ -3,7 +3,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from pin_metaik.compare.papers import Options, Paper, reproduce
-from pin_metaik.compare.papers.arm import TRACE_POINTS, ArmCase, hybrid, of, search, thinned
+from pin_metaik.compare.papers.arm import TRACE_POINTS, ArmCase, hybrid, search, thinned, trials_of
 from pin_metaik.compare.papers.arm_report import angles, every_run, hybrids, summary
 from pin_metaik.compare.papers.rv7fl_setup import cases
 from pin_metaik.interrupts import kept
@@ -60,9 +60,9 @@ def test_a_trace_is_thinned_to_points_on_a_logarithmic_axis_and_keeps_its_ends()
 
 def test_trials_are_chosen_by_what_is_named_the_best_first(case):
     trials = [search(case, "GWO", GWO(agents=30), budget, 0, rng()).work() for budget in (60, 600)]
-    assert [trial.budget for trial in of(trials, case=case.name)] == [600, 60]
-    assert of(trials, budget=60) == [trials[0]]
-    assert of(trials, method="MTDE") == []
+    assert [trial.budget for trial in trials_of(trials, case=case.name)] == [600, 60]
+    assert trials_of(trials, budget=60) == [trials[0]]
+    assert trials_of(trials, method="MTDE") == []
 
 
 def test_nothing_run_is_summarised_as_nothing():

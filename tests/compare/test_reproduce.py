@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 from pin_metaik import cli
 from pin_metaik.compare.folder.lock import locked
 from pin_metaik.compare.papers import aerial_arm
-from pin_metaik.compare.papers.arm import Trial
+from pin_metaik.compare.papers.arm import ArmTrial
 from pin_metaik.errors import CannotWrite, InvalidSetting
 
 
@@ -95,7 +95,7 @@ def test_the_same_seed_gives_the_same_numbers(tmp_path):
 
 
 def test_ctrl_c_prints_and_writes_what_is_done_and_marks_it_partial(tmp_path, monkeypatch):
-    real, made = Trial.__init__, []
+    real, made = ArmTrial.__init__, []
 
     def impatient(self, *values, **named):
         if len(made) == 3:
@@ -103,7 +103,7 @@ def test_ctrl_c_prints_and_writes_what_is_done_and_marks_it_partial(tmp_path, mo
         made.append(self)
         real(self, *values, **named)
 
-    monkeypatch.setattr(Trial, "__init__", impatient)
+    monkeypatch.setattr(ArmTrial, "__init__", impatient)
     result = command("puma_offset", "--runs", 2, "--out", tmp_path)
     assert result.exit_code == 130
     assert "PARTIAL: interrupted after 3 of 16 jobs" in result.output

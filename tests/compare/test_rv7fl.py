@@ -3,13 +3,13 @@ import pytest
 from numpy.testing import assert_allclose
 
 from pin_metaik.compare.papers import Options
-from pin_metaik.compare.papers.arm import Trial
+from pin_metaik.compare.papers.arm import ArmTrial
 from pin_metaik.compare.papers.rv7fl import jobs, record, sections, verdict, wolves_need
 from pin_metaik.compare.papers.rv7fl_setup import EQUAL, LONG, METHODS, PRINTED, SHORT, TARGETS, Printed, cases
 
 
 def trial(case, method, budget, cost, seconds):
-    return Trial(case, method, budget, 0, cost, np.zeros(6), budget, seconds, np.array([[budget, cost]]))
+    return ArmTrial(case, method, budget, 0, cost, np.zeros(6), budget, seconds, np.array([[budget, cost]]))
 
 
 def test_at_zero_the_tip_is_on_case_3():

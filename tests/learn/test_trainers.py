@@ -63,7 +63,7 @@ def test_a_network_asked_outside_its_training_range_warns_and_stays_finite():
     model = fit(X, y, (5,), "lm", 50)
     with pytest.warns(OutsideTraining, match="1 of 2 inputs lie outside the training range"):
         assert np.isfinite(model([[0, 0], [1e6, 0]])).all()
-    assert list(model.knows(np.array([[0, 0], [1e6, 0]]))) == [True, False]
+    assert list(model.covers(np.array([[0, 0], [1e6, 0]]))) == [True, False]
     for wrong in ([[0, np.nan]], [[0, 0, 0]], [0, 0]):
         with pytest.raises(InvalidSetting):
             model(wrong)

@@ -58,8 +58,8 @@ def test_contains_answers_for_every_point_and_nan_is_nowhere():
     X = np.array([[0.0, 1.0], [0.5, 1.1], [np.nan, 0.5]])
     assert box.contains(X).tolist() == [True, False, False]
     assert box.contains(X[0])
-    assert not box.holds(X)
-    assert box.holds(X[:1])
+    assert not box.contains_all(X)
+    assert box.contains_all(X[:1])
 
 
 def test_halfway_brings_back_only_what_left():

@@ -18,7 +18,7 @@ from pin_metaik.compare.papers.aerial_arm_tables import (
     table_readings,
     versus_de,
 )
-from pin_metaik.compare.papers.arm import Trial, hybrid, search
+from pin_metaik.compare.papers.arm import ArmTrial, hybrid, search
 from pin_metaik.compare.papers.arm_report import angles, convergence, every_run, hybrids, per_run
 from pin_metaik.compare.papers.paper import Job, Options, Paper
 from pin_metaik.compare.report import Section
@@ -31,7 +31,7 @@ FLOOR = 1e-12  # of the figures: below is rounding
 SMALL_BATCHES = 25  # times as long takes an evaluation in batches of three as one in batches of hundreds
 
 
-def jobs(options: Options) -> Iterator[Job[Trial]]:
+def jobs(options: Options) -> Iterator[Job[ArmTrial]]:
     """Every row by SFLA, by DE, and by the hybrid at a tenth of the text's evaluations; the short rows first."""
     chains = {half_range: arm(half_range) for half_range in (WALLS, FREE)}
     for run in range(options.runs):
@@ -65,7 +65,7 @@ def readings(number: int) -> Sequence[Reading]:
     return READINGS if number in COMPARED else (TEXT, TIMES)
 
 
-def sections(trials: Sequence[Trial], options: Options) -> list[Section]:
+def sections(trials: Sequence[ArmTrial], options: Options) -> list[Section]:
     """Table 3 in both readings, what makes their difference, DE, the hybrids, and what the printed table tells."""
     trials = sorted(trials, key=lambda trial: int(trial.case.removeprefix("row ")))
     searches = [trial for trial in trials if trial.trace is not None]
@@ -134,7 +134,7 @@ def sections(trials: Sequence[Trial], options: Options) -> list[Section]:
     ]
 
 
-def turned_back(trial: Trial) -> Trial:
+def turned_back(trial: ArmTrial) -> ArmTrial:
     """The same posture with every angle from -180 to 180 degrees."""
     return replace(trial, x=trial.x - 2 * np.pi * np.rint(trial.x / (2 * np.pi)))
 

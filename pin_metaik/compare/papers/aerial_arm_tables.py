@@ -18,18 +18,18 @@ from pin_metaik.compare.papers.aerial_arm_setup import (
     poses,
     total_error,
 )
-from pin_metaik.compare.papers.arm import Trial, of
+from pin_metaik.compare.papers.arm import ArmTrial, trials_of
 from pin_metaik.compare.papers.arm_report import SUMMARY, median_seconds, summary
 from pin_metaik.compare.papers.plots import Runs
 from pin_metaik.compare.report import Column, Table
 
 
-def table_3(name: str, trials: Sequence[Trial], numbers: Iterable[int], reading: Reading) -> Table:
+def table_3(name: str, trials: Sequence[ArmTrial], numbers: Iterable[int], reading: Reading) -> Table:
     """The paper's Table 3 and ours, in one reading."""
     chain = arm(reading.half_range)
     lines = []
     for number in numbers:
-        row, runs = ROWS[number], of(trials, case=f"row {number}", method=str(reading))
+        row, runs = ROWS[number], trials_of(trials, case=f"row {number}", method=str(reading))
         total = float(total_error(poses(chain, runs[0].x[None]))[0]) if runs else None
         settings = (number, row.NP, row.iN, row.iM, reading.evaluations(row))
         ours = (*summary(runs)[:3], solved(runs))
@@ -49,12 +49,12 @@ def table_3(name: str, trials: Sequence[Trial], numbers: Iterable[int], reading:
     return Table(name, title, columns, lines)
 
 
-def table_readings(trials: Sequence[Trial], numbers: Iterable[int]) -> Table:
+def table_readings(trials: Sequence[ArmTrial], numbers: Iterable[int]) -> Table:
     """Some rows in every reading."""
     lines = []
     for number in numbers:
         for reading in READINGS:
-            runs = of(trials, case=f"row {number}", method=str(reading))
+            runs = trials_of(trials, case=f"row {number}", method=str(reading))
             ours = (*summary(runs)[:3], solved(runs), median_seconds(runs))
             lines.append((f"row {number}", str(reading), reading.evaluations(ROWS[number]), ROWS[number].J, *ours))
     columns = (
@@ -69,12 +69,12 @@ def table_readings(trials: Sequence[Trial], numbers: Iterable[int]) -> Table:
     return Table("aerial_arm_readings", "J in every reading", columns, lines)
 
 
-def table_de(trials: Sequence[Trial], numbers: Iterable[int], methods: Mapping[float, str]) -> Table:
+def table_de(trials: Sequence[ArmTrial], numbers: Iterable[int], methods: Mapping[float, str]) -> Table:
     """SFLA by the text, and DE with its evaluations on both ranges of the joints."""
     names = (str(TEXT), *methods.values())
     lines = []
     for number in numbers:
-        all_runs = [of(trials, case=f"row {number}", method=method) for method in names]
+        all_runs = [trials_of(trials, case=f"row {number}", method=method) for method in names]
         results = [value for runs in all_runs for value in (summary(runs)[1], solved(runs))]
         lines.append((number, TEXT.evaluations(ROWS[number]), *results, *map(median_seconds, all_runs[:2])))
     columns = (
@@ -92,7 +92,7 @@ def table_de(trials: Sequence[Trial], numbers: Iterable[int], methods: Mapping[f
     return Table("aerial_arm_de", title, columns, lines)
 
 
-def solved(runs: Sequence[Trial]) -> str:
+def solved(runs: Sequence[ArmTrial]) -> str:
     """How many runs found the right region."""
     return f"{sum(trial.cost <= SOLVED for trial in runs)}/{len(runs)}"
 
@@ -117,15 +117,15 @@ def effort() -> str:
     )
 
 
-def versus_de(trials: Sequence[Trial], methods: Mapping[float, str]) -> str:
+def versus_de(trials: Sequence[ArmTrial], methods: Mapping[float, str]) -> str:
     """How often each of the methods finds the right region, in a sentence."""
     found = "; ".join(
-        f"{name}: {solved(of(trials, method=name))}" for name in (str(TEXT), str(TIMES), *methods.values())
+        f"{name}: {solved(trials_of(trials, method=name))}" for name in (str(TEXT), str(TIMES), *methods.values())
     )
     return f"Runs that found the right region, of all rows: {found}. DE has the evaluations of the text's SFLA."
 
 
-def at_the_walls(trials: Sequence[Trial]) -> str:
+def at_the_walls(trials: Sequence[ArmTrial]) -> str:
     """How many of the runs that found no solution ended at a joint limit, in a sentence."""
     stuck = [trial.x for trial in trials if trial.cost > SOLVED]
     walled = sum(bool((np.pi - np.abs(x) < np.radians(0.1)).any()) for x in stuck)
@@ -136,14 +136,14 @@ def at_the_walls(trials: Sequence[Trial]) -> str:
 
 
 def panels(
-    trials: Sequence[Trial], numbers: Sequence[int], methods: Mapping[str, str], printed: bool
+    trials: Sequence[ArmTrial], numbers: Sequence[int], methods: Mapping[str, str], printed: bool
 ) -> dict[str, dict[str, Runs]]:
     """Results by row, a panel a method, for the figure; with the printed J or without."""
     return {
         title: {
             str(number): Runs(
                 method,
-                [trial.cost for trial in of(trials, case=f"row {number}", method=method)],
+                [trial.cost for trial in trials_of(trials, case=f"row {number}", method=method)],
                 ROWS[number].J if printed else None,
             )
             for number in numbers

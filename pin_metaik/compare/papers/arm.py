@@ -32,7 +32,7 @@ class ArmCase:
 
 
 @dataclass(frozen=True, eq=False)
-class Trial:
+class ArmTrial:
     """One run of one method on one case.
 
     Attributes:
@@ -60,31 +60,31 @@ class Trial:
 
 def search(
     case: ArmCase, method: str, algorithm: Metaheuristic, budget: int, run: int, rng: np.random.Generator
-) -> Job[Trial]:
+) -> Job[ArmTrial]:
     """The metaheuristic alone, on the paper's objective."""
 
-    def work() -> Trial:
+    def work() -> ArmTrial:
         began = process_time()
         found = minimize(case.objective, case.problem.box, algorithm, Budget(evaluations=budget), rng, trace=True)
         seconds = process_time() - began
         trace = thinned(found.trace) if found.trace is not None else None
-        return Trial(case.name, method, budget, run, found.cost, found.x, found.evaluations, seconds, trace)
+        return ArmTrial(case.name, method, budget, run, found.cost, found.x, found.evaluations, seconds, trace)
 
     return Job(_label(case, method, budget, run), work, budget)
 
 
 def hybrid(
     case: ArmCase, method: str, seeder: Metaheuristic, budget: int, run: int, rng: np.random.Generator
-) -> Job[Trial]:
+) -> Job[ArmTrial]:
     """The metaheuristic as a seeder and damped least squares after it, until solved or the budget is spent."""
     solver = IKSolver(seeder, "dls", Budget(evaluations=budget))
 
-    def work() -> Trial:
+    def work() -> ArmTrial:
         began = process_time()
         result = solver.search(case.problem, rng=rng)
         seconds = process_time() - began
         cost = float(case.objective(result.x[None])[0])
-        return Trial(case.name, refined(method), budget, run, cost, result.x, result.evaluations, seconds)
+        return ArmTrial(case.name, refined(method), budget, run, cost, result.x, result.evaluations, seconds)
 
     return Job(_label(case, refined(method), budget, run), work, budget)
 
@@ -101,9 +101,9 @@ def thinned(trace: Array) -> Array:
     return np.column_stack((at, trace[np.searchsorted(trace[:, 0], at, side="right") - 1, 1]))
 
 
-def of(
-    trials: Iterable[Trial], *, case: str | None = None, method: str | None = None, budget: int | None = None
-) -> list[Trial]:
+def trials_of(
+    trials: Iterable[ArmTrial], *, case: str | None = None, method: str | None = None, budget: int | None = None
+) -> list[ArmTrial]:
     """The trials of a case, a method, a budget, the best first."""
     chosen = (
         trial

@@ -10,7 +10,7 @@ from typing import Any
 from pin_metaik.compare.papers import plots
 from pin_metaik.compare.papers.claims import claims_table
 from pin_metaik.compare.papers.paper import Job, Options, Paper
-from pin_metaik.compare.papers.path_planning_claims import claims, of
+from pin_metaik.compare.papers.path_planning_claims import claims, trials_of
 from pin_metaik.compare.papers.path_planning_setup import (
     SEGMENTS,
     SETTINGS,
@@ -89,7 +89,7 @@ def comparison(trials: Sequence[PathTrial]) -> Table:
     for scene in SETTINGS:
         for fitness in FITNESSES:
             for method in METHODS:
-                runs = of(trials, scene, method, fitness)
+                runs = trials_of(trials, scene, method, fitness)
                 if runs:
                     gaps = [100 * trial.gap for trial in runs if trial.gap is not None]
                     gap = (min(gaps), median(gaps), max(gaps)) if gaps else (None, None, None)
@@ -178,7 +178,7 @@ def figures(trials: Sequence[PathTrial]) -> tuple[Figure, ...]:
 
     def convergence(canvas: Any) -> None:
         panels = {
-            scene: {method: [t.trace for t in of(trials, scene, method, "paper")] for method in METHODS}
+            scene: {method: [t.trace for t in trials_of(trials, scene, method, "paper")] for method in METHODS}
             for scene in scenes
         }
         plots.convergence(canvas, panels, "best fitness so far", 1e-3)
@@ -186,7 +186,7 @@ def figures(trials: Sequence[PathTrial]) -> tuple[Figure, ...]:
     def times(canvas: Any) -> None:
         for ax, scene in zip(canvas.subplots(1, len(scenes), squeeze=False)[0], scenes, strict=True):
             for method in METHODS:
-                runs = of(trials, scene, method, "paper")
+                runs = trials_of(trials, scene, method, "paper")
                 seconds = [1e3 * t.seconds for t in runs]
                 ax.plot([t.run + 1 for t in runs], seconds, ".-", color=COLOURS[method], linewidth=0.8, label=method)
             ax.set(title=scene, xlabel="run", ylabel="processor time, ms", ylim=(0, None))
@@ -200,7 +200,7 @@ def figures(trials: Sequence[PathTrial]) -> tuple[Figure, ...]:
         axes = canvas.subplots(len(METHODS), len(scenes), squeeze=False)
         for row, method in zip(axes, METHODS, strict=True):
             for ax, scene in zip(row, scenes, strict=True):
-                runs = of(trials, scene, method, "paper")
+                runs = trials_of(trials, scene, method, "paper")
                 world = problem(SETTINGS[scene])
                 free, colliding = ([Path(t.points) for t in runs if t.free is well] for well in (True, False))
                 draw_runs(ax, world.scene, free, world.optimum, COLOURS[method], colliding)

@@ -9,14 +9,14 @@ from pin_metaik.compare.papers.claims import Claim, verdict
 from pin_metaik.compare.papers.path_planning_setup import SETTINGS, PathTrial
 
 
-def of(trials: Sequence[PathTrial], scene: str, method: str, fitness: str) -> list[PathTrial]:
+def trials_of(trials: Sequence[PathTrial], scene: str, method: str, fitness: str) -> list[PathTrial]:
     """The runs of a method on a scene with a fitness."""
     return [trial for trial in trials if (trial.scene, trial.method, trial.fitness) == (scene, method, fitness)]
 
 
 def claims(trials: Sequence[PathTrial]) -> Iterator[Claim]:
     """Whether PSO finds the better path, whether it is faster, and two things that cannot be seen."""
-    pairs = [(of(trials, scene, "GA", "paper"), of(trials, scene, "PSO", "paper")) for scene in SETTINGS]
+    pairs = [(trials_of(trials, scene, "GA", "paper"), trials_of(trials, scene, "PSO", "paper")) for scene in SETTINGS]
     pairs = [(ga, pso) for ga, pso in pairs if ga and pso]
     shorter = [_gap(pso) < _gap(ga) for ga, pso in pairs]
     fitter = [median(t.f for t in pso) < median(t.f for t in ga) for ga, pso in pairs]

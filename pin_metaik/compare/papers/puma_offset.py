@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from pin_metaik.arrays import Array
-from pin_metaik.compare.papers.arm import ArmCase, Trial, hybrid, of, search
+from pin_metaik.compare.papers.arm import ArmCase, ArmTrial, hybrid, search, trials_of
 from pin_metaik.compare.papers.arm_report import (
     SUMMARY,
     angles,
@@ -91,7 +91,7 @@ def cases() -> dict[str, ArmCase]:
     return made
 
 
-def jobs(options: Options) -> Iterator[Job[Trial]]:
+def jobs(options: Options) -> Iterator[Job[ArmTrial]]:
     """Both examples by GA, by PSO, and by the hybrids at a tenth of the evaluations."""
     for run in range(options.runs):
         for number, (name, case) in enumerate(cases().items()):
@@ -101,14 +101,14 @@ def jobs(options: Options) -> Iterator[Job[Trial]]:
                 yield hybrid(case, method, algorithm, budget // 10, run, options.generator(number, run))
 
 
-def sections(trials: Sequence[Trial], options: Options) -> list[Section]:
+def sections(trials: Sequence[ArmTrial], options: Options) -> list[Section]:
     """The two examples, the cost of the printed answer, and the hybrids."""
     searches = [trial for trial in trials if trial.trace is not None]
     panels = {
         name: {
             method: Runs(
                 method,
-                [trial.cost for trial in of(trials, case=name, method=method)],
+                [trial.cost for trial in trials_of(trials, case=name, method=method)],
                 PRINTED_O if (name, method) == ("Example B", "PSO") else None,
             )
             for method in METHODS
@@ -149,12 +149,12 @@ def sections(trials: Sequence[Trial], options: Options) -> list[Section]:
     ]
 
 
-def table(trials: Sequence[Trial]) -> Table:
+def table(trials: Sequence[ArmTrial]) -> Table:
     """O and time, the paper's and ours."""
     rows = []
     for name, example in EXAMPLES.items():
         for method in METHODS:
-            runs = of(trials, case=name, method=method)
+            runs = trials_of(trials, case=name, method=method)
             d = float(np.sqrt(runs[0].cost / example.p)) if runs else None
             paper = (PRINTED_O, PRINTED_S) if (name, method) == ("Example B", "PSO") else (None, None)
             results = (paper[0], *summary(runs), d, paper[1], median_seconds(runs))

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from statistics import median
 from typing import TypeAlias
 
-from pin_metaik.compare.papers.arm import Trial, hybrid, of, search
+from pin_metaik.compare.papers.arm import ArmTrial, hybrid, search, trials_of
 from pin_metaik.compare.papers.arm_report import (
     SUMMARY,
     angles,
@@ -39,11 +39,11 @@ ROUNDING = 1e-9  # mm; smaller differences do not count
 Outcomes: TypeAlias = dict[tuple[str, str], Printed]  # by case and method
 
 
-def jobs(options: Options) -> Iterator[Job[Trial]]:
+def jobs(options: Options) -> Iterator[Job[ArmTrial]]:
     """The comparison in both units and the hybrids, then MTDE's long budget, then the wolves'."""
     arms = cases()
 
-    def try_all(trial: Callable[..., Job[Trial]], budgets: Mapping[str, int]) -> Iterator[Job[Trial]]:
+    def try_all(trial: Callable[..., Job[ArmTrial]], budgets: Mapping[str, int]) -> Iterator[Job[ArmTrial]]:
         for run in range(options.runs):  # outermost, so that there is something to compare whenever it is interrupted
             for number, case in enumerate(arms):
                 for method, budget in budgets.items():
@@ -58,7 +58,7 @@ def jobs(options: Options) -> Iterator[Job[Trial]]:
         yield from try_all(search, {method: LONG[method] for method in LONG if method != "MTDE"})
 
 
-def sections(trials: Sequence[Trial], options: Options) -> list[Section]:
+def sections(trials: Sequence[ArmTrial], options: Options) -> list[Section]:
     """The paper's table in its own units of budget and at equal evaluations, the long budget, and the hybrids."""
     searches = [trial for trial in trials if trial.trace is not None]
     comparison = [trial for trial in searches if trial.budget <= EQUAL["MTDE"]]
@@ -112,12 +112,13 @@ def sections(trials: Sequence[Trial], options: Options) -> list[Section]:
     ]
 
 
-def side_by_side(name: str, trials: Sequence[Trial], budgets: Mapping[str, int], papers: Mapping[str, int]) -> Table:
+def side_by_side(name: str, trials: Sequence[ArmTrial], budgets: Mapping[str, int], papers: Mapping[str, int]) -> Table:
     """The paper's best of 10 and ours, its evaluations and ours."""
     rows = []
     for case in TARGETS:
         for method, budget in budgets.items():
-            ours, paper = of(trials, case=case, method=method, budget=budget), PRINTED[case, method, papers[method]]
+            ours = trials_of(trials, case=case, method=method, budget=budget)
+            paper = PRINTED[case, method, papers[method]]
             spent = (papers[method], budget)
             rows.append((case, method, *spent, paper.F, *summary(ours), paper.seconds, median_seconds(ours)))
     evaluations = (Column("evals paper", ","), Column("evals ours", ","))
@@ -126,12 +127,12 @@ def side_by_side(name: str, trials: Sequence[Trial], budgets: Mapping[str, int],
     return Table(name, "F in mm and median time of a run in s; the paper's best of 10 runs, and ours", columns, rows)
 
 
-def versus(method: str, trials: Sequence[Trial], budgets: Mapping[str, int]) -> str:
+def versus(method: str, trials: Sequence[ArmTrial], budgets: Mapping[str, int]) -> str:
     """How a method compares with GWO, here and in the paper, in a sentence."""
     best: Outcomes = {}
     for case in TARGETS:
         for name in (method, "GWO"):
-            if runs := of(trials, case=case, method=name, budget=budgets[name]):
+            if runs := trials_of(trials, case=case, method=name, budget=budgets[name]):
                 best[case, name] = Printed(runs[0].cost, median_seconds(runs) or 0.0)
     printed = {
         (case, name): PRINTED[case, name, budgets[name]]
@@ -160,9 +161,9 @@ def record(method: str, outcomes: Outcomes) -> str:
     )
 
 
-def verdict(trials: Sequence[Trial]) -> str:
+def verdict(trials: Sequence[ArmTrial]) -> str:
     """The quantity that the printed times measure, in a sentence."""
-    wolves, mtde = (seconds_per_evaluation(of(trials, method=m, budget=EQUAL[m])) for m in ("GWO", "MTDE"))
+    wolves, mtde = (seconds_per_evaluation(trials_of(trials, method=m, budget=EQUAL[m])) for m in ("GWO", "MTDE"))
     if wolves is None or mtde is None:
         return "GWO and MTDE were not both run."
     slower = "slower" if mtde > wolves else "faster"
@@ -172,10 +173,10 @@ def verdict(trials: Sequence[Trial]) -> str:
     )
 
 
-def wolves_need(trials: Sequence[Trial], options: Options) -> str:
+def wolves_need(trials: Sequence[ArmTrial], options: Options) -> str:
     """Time of the wolves' long budget, estimated from their short one."""
     wolves = [method for method in LONG if method != "MTDE"]
-    each = [seconds_per_evaluation(of(trials, method=method, budget=SHORT[method])) for method in wolves]
+    each = [seconds_per_evaluation(trials_of(trials, method=method, budget=SHORT[method])) for method in wolves]
     if options.long or None in each:
         return f"For the wolves it is {LONG['GWO']:,} evaluations a run."
     hours = sum(LONG[m] * (s or 0.0) for m, s in zip(wolves, each, strict=True)) * len(TARGETS) * options.runs / 3600
@@ -185,7 +186,7 @@ def wolves_need(trials: Sequence[Trial], options: Options) -> str:
     )
 
 
-def panels(trials: Sequence[Trial]) -> dict[str, dict[str, Runs]]:
+def panels(trials: Sequence[ArmTrial]) -> dict[str, dict[str, Runs]]:
     """Results by method and budget by case, for the figure."""
     short = {"GWO": "GWO", "improved GWO": "impr.\nGWO", "MTDE": "MTDE"}
     budgets = [*SHORT.items(), ("MTDE", EQUAL["MTDE"]), ("MTDE", LONG["MTDE"])]
@@ -193,7 +194,7 @@ def panels(trials: Sequence[Trial]) -> dict[str, dict[str, Runs]]:
         case: {
             f"{short[method]}\n{budget // 1000}k": Runs(
                 method,
-                [trial.cost for trial in of(trials, case=case, method=method, budget=budget)],
+                [trial.cost for trial in trials_of(trials, case=case, method=method, budget=budget)],
                 PRINTED[case, method, budget].F if (case, method, budget) in PRINTED else None,
             )
             for method, budget in budgets

@@ -10,7 +10,7 @@ import numpy as np
 from pin_metaik.compare.papers import plots
 from pin_metaik.compare.papers.claims import claims_table
 from pin_metaik.compare.papers.paper import Job, Options, Paper
-from pin_metaik.compare.papers.trajectory_claims import claims, middle, of, plan_remarks, remarks
+from pin_metaik.compare.papers.trajectory_claims import claims, middle, nets_of, plan_remarks, remarks
 from pin_metaik.compare.papers.trajectory_setup import (
     CONTROLS,
     COUNTS,
@@ -100,7 +100,7 @@ def table_1(nets: Sequence[NetTrial]) -> Table:
     for net in NETS:
         for trainer, trainer_name in TRAINERS.items():
             for points, name in POINTS.items():
-                runs, paper = of(nets, net, trainer, points), PRINTED.get((net, trainer, points))
+                runs, paper = nets_of(nets, net, trainer, points), PRINTED.get((net, trainer, points))
                 if runs:
                     ours = tuple(middle(runs, error) for error in ("E0", "Em", "E5", "F0", "Fm", "mse"))
                     rows.append((net, trainer_name, name, *(paper or (None,) * 3), *ours, len(runs), runs[0].n))
@@ -118,7 +118,7 @@ def designs(nets: Sequence[NetTrial]) -> Table:
     rows: list[tuple[Value, ...]] = []
     for net in NETS:
         for design in ("paper", "log"):
-            runs = of(nets, net, "lm", "grid", design)
+            runs = nets_of(nets, net, "lm", "grid", design)
             if runs:
                 rows.append((net, design, *(middle(runs, error) for error in ("E0", "Em", "E5", "F0", "Fm"))))
     columns = (
@@ -168,7 +168,7 @@ def figures(nets: Sequence[NetTrial]) -> tuple[Figure, ...]:
         net: {
             f"{trainer}\n{name}": plots.Runs(
                 name,
-                [trial.E0 for trial in of(nets, net, trainer, points)],
+                [trial.E0 for trial in nets_of(nets, net, trainer, points)],
                 PRINTED[net, trainer, points].E0,
             )
             for trainer in TRAINERS

@@ -21,7 +21,7 @@ CONTROL_IS = {"random": " of the test set, drawn without a thought,", "chebyshev
 NEAR = 2.0  # errors within this factor of the printed ones are the same
 
 
-def of(nets: Sequence[NetTrial], net: str, trainer: str, points: str, design: str = "paper") -> list[NetTrial]:
+def nets_of(nets: Sequence[NetTrial], net: str, trainer: str, points: str, design: str = "paper") -> list[NetTrial]:
     """The runs of one kind of network."""
     return [t for t in nets if (t.net, t.trainer, t.points, t.design) == (net, trainer, points, design)]
 
@@ -42,12 +42,12 @@ def claims(nets: Sequence[NetTrial], speeds: Sequence[SpeedTrial]) -> Iterator[C
 def remarks(nets: Sequence[NetTrial]) -> Iterator[str]:
     """What other training points do, in sentences."""
     for net in NETS:
-        errors = {points: of(nets, net, "lm", points) for points in POINTS}
+        errors = {points: nets_of(nets, net, "lm", points) for points in POINTS}
         if all(errors.values()):
             said = ", ".join(f"{points} {middle(runs, 'E0'):.3g}" for points, runs in errors.items())
             yield f"E0 of {net} with Levenberg-Marquardt by training points: {said} percent."
     for points in CONTROLS:
-        runs = [(of(nets, net, "lm", points), of(nets, net, "lm", "grid")) for net in NETS]
+        runs = [(nets_of(nets, net, "lm", points), nets_of(nets, net, "lm", "grid")) for net in NETS]
         if all(control and grid for control, grid in runs):
             better = sum(middle(control, "E0") < middle(grid, "E0") for control, grid in runs)
             yield (
@@ -69,7 +69,8 @@ def plan_remarks(plans: Sequence[PlanTrial]) -> Iterator[str]:
 
 
 def _clustering(nets: Sequence[NetTrial]) -> Claim:
-    pairs = [(of(nets, net, trainer, "grid"), of(nets, net, trainer, "fcm")) for net in NETS for trainer in TRAINERS]
+    kinds = [(net, trainer) for net in NETS for trainer in TRAINERS]
+    pairs = [(nets_of(nets, *kind, "grid"), nets_of(nets, *kind, "fcm")) for kind in kinds]
     pairs = [(grid, fcm) for grid, fcm in pairs if grid and fcm]
     lower = [middle(fcm, "E0") < middle(grid, "E0") for grid, fcm in pairs]
     larger, full = (sum(middle(f, error) > middle(g, error) for g, f in pairs) for error in ("Em", "Fm"))
@@ -84,7 +85,7 @@ def _clustering(nets: Sequence[NetTrial]) -> Claim:
 def _trainers(nets: Sequence[NetTrial]) -> Claim:
     holds, said = [], []
     for net in NETS:
-        trained = {trainer: of(nets, net, trainer, "grid") for trainer in TRAINERS}
+        trained = {trainer: nets_of(nets, net, trainer, "grid") for trainer in TRAINERS}
         if all(trained.values()):
             ranks = sorted((middle(trials, "mse"), trainer) for trainer, trials in trained.items())
             holds.append((ranks[0][1], ranks[-1][1]) == ("lm", "rprop"))
@@ -97,7 +98,7 @@ def _trainers(nets: Sequence[NetTrial]) -> Claim:
 
 
 def _errors(nets: Sequence[NetTrial]) -> Claim:
-    pairs = [(of(nets, *key), printed) for key, printed in PRINTED.items()]
+    pairs = [(nets_of(nets, *key), printed) for key, printed in PRINTED.items()]
     ratios = [middle(runs, "E0") / printed.E0 for runs, printed in pairs if runs]
     near = [1 / NEAR <= ratio <= NEAR for ratio in ratios]
     times = f"{min(ratios):.1f} to {max(ratios):.1f}" if ratios else "-"

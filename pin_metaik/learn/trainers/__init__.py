@@ -13,7 +13,7 @@ from pin_metaik.learn.network import Network
 from pin_metaik.learn.trainers.bfgs import BFGS
 from pin_metaik.learn.trainers.levenberg import LevenbergMarquardt
 from pin_metaik.learn.trainers.minpack import Minpack
-from pin_metaik.learn.trainers.protocol import Finished, Record, Task, Trainer, Training
+from pin_metaik.learn.trainers.protocol import Finished, Record, Trainer, Training, TrainingTask
 from pin_metaik.learn.trainers.rprop import Rprop
 from pin_metaik.learn.trainers.scg import SCG
 from pin_metaik.lookup import lookup
@@ -73,7 +73,7 @@ def train(
         raise InvalidSetting(f"iterations must be at least 1, not {iterations!r}")
     if len(X) < network.count:
         raise InvalidSetting(f"{len(X)} data are too few for the {network.count} weights of {network}")
-    task = Task(network, X, y)
+    task = TrainingTask(network, X, y)
     record = Record(w, task.loss(w)[0], iterations, watch)
     began = perf_counter()
 

@@ -8,7 +8,7 @@ from scipy.optimize import OptimizeResult, minimize
 
 from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
-from pin_metaik.learn.trainers.protocol import Record, Task
+from pin_metaik.learn.trainers.protocol import Record, TrainingTask
 
 
 @checked
@@ -22,7 +22,7 @@ class BFGS:
 
     tolerance: float = 1e-12
 
-    def run(self, task: Task, w: Array, record: Record, iterations: int) -> None:
+    def run(self, task: TrainingTask, w: Array, record: Record, iterations: int) -> None:
         """Train."""
 
         def tell(intermediate_result: OptimizeResult) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.learn.trainers.protocol import Record, Task
+from pin_metaik.learn.trainers.protocol import Record, TrainingTask
 
 HOPELESS = 1e12  # damping at which no step is left
 PIECE = 64  # rows
@@ -43,7 +43,7 @@ class LevenbergMarquardt:
                 f"{self.down}"
             )
 
-    def run(self, task: Task, w: Array, record: Record, iterations: int) -> None:
+    def run(self, task: TrainingTask, w: Array, record: Record, iterations: int) -> None:
         """Train until the iterations are spent or no step helps."""
         mu, identity = self.mu, np.eye(len(w))
         e = task.residuals(w)

@@ -9,7 +9,7 @@ from scipy.optimize import least_squares
 
 from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
-from pin_metaik.learn.trainers.protocol import Record, Task
+from pin_metaik.learn.trainers.protocol import Record, TrainingTask
 
 EPSILON = float(np.finfo(float).eps)
 
@@ -27,7 +27,7 @@ class Minpack:
 
     tolerance: float = EPSILON
 
-    def run(self, task: Task, w: Array, record: Record, iterations: int) -> None:
+    def run(self, task: TrainingTask, w: Array, record: Record, iterations: int) -> None:
         """Train; needs at least as many data as weights."""
         told = False
 

@@ -14,7 +14,7 @@ from pin_metaik.watching import Progress, Watch, tell
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
+class TrainingTask:
     """A network and the data it shall fit: mean squared error, residuals and their derivatives.
 
     Attributes:
@@ -104,7 +104,7 @@ class Training:
 class Trainer(Protocol):
     """Anything that improves weights step by step; its settings are fields of a frozen dataclass."""
 
-    def run(self, task: Task, w: Array, record: Record, iterations: int) -> None:
+    def run(self, task: TrainingTask, w: Array, record: Record, iterations: int) -> None:
         """Improve the weights w (count,), telling the record after every iteration; return when nothing is gained.
 
         Args:

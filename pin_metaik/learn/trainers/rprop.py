@@ -8,7 +8,7 @@ import numpy as np
 
 from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
-from pin_metaik.learn.trainers.protocol import Record, Task
+from pin_metaik.learn.trainers.protocol import Record, TrainingTask
 
 
 @checked
@@ -30,7 +30,7 @@ class Rprop:
     least: float = 1e-12
     most: float = 50.0
 
-    def run(self, task: Task, w: Array, record: Record, iterations: int) -> None:
+    def run(self, task: TrainingTask, w: Array, record: Record, iterations: int) -> None:
         """Train until the iterations are spent."""
         w = w.copy()
         step, before = np.full(len(w), self.first), np.zeros(len(w))

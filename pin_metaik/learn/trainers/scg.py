@@ -8,7 +8,7 @@ import numpy as np
 
 from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
-from pin_metaik.learn.trainers.protocol import Record, Task
+from pin_metaik.learn.trainers.protocol import Record, TrainingTask
 
 
 @checked
@@ -24,7 +24,7 @@ class SCG:
     sigma: float = 5e-5
     lamda: float = 5e-7
 
-    def run(self, task: Task, w: Array, record: Record, iterations: int) -> None:
+    def run(self, task: TrainingTask, w: Array, record: Record, iterations: int) -> None:
         """Train until the iterations are spent or the gradient vanishes."""
         lamda, bar = self.lamda, 0.0
         E, g = task.loss(w)

@@ -103,7 +103,7 @@ class LearnedTurn:
         if not (np.all((v >= 0) & (v < np.inf)) and np.all((theta >= 0) & (theta < np.pi))):
             raise InvalidSetting("speeds must be finite and at least 0, angles from 0 to below pi")
         moving = v > 0
-        asked = ~self.knows(v, theta) & moving
+        asked = ~self.covers(v, theta) & moving
         if asked.any():
             warn(
                 f"{asked.sum()} of {asked.size} turns lie outside the training range of {self.speeds[0]:.4g} to "
@@ -116,7 +116,7 @@ class LearnedTurn:
         return lengths
 
     @checked
-    def knows(self, v: ArrayLike, theta: ArrayLike) -> NDArray[np.bool_]:
+    def covers(self, v: ArrayLike, theta: ArrayLike) -> NDArray[np.bool_]:
         """Whether speeds (...) and angles (...) lie in the training range."""
         v, theta = _together(v, theta)
         slack = 1 + 1e-9
@@ -132,7 +132,7 @@ class LearnedTurn:
             OutsideTraining: Angles outside the training range: there the closed form is used.
         """
         theta = array("theta", theta, "n")
-        known = self.knows(self.speeds[1], theta)
+        known = self.covers(self.speeds[1], theta)
         if not known.all():
             corners = ", ".join(f"{i + 1} ({np.degrees(theta[i]):.3g} degrees)" for i in np.flatnonzero(~known))
             warn(
