@@ -1,0 +1,236 @@
+"""Whether a robot that brakes stops before anything collides: by measured distances, and bounds on how far bodies go."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from pin_metaik.collision import CollisionWorld
+from pin_metaik.collision.checker import Checker
+from pin_metaik.kinematics import Chain
+from pin_metaik.kinematics.model import leader_of
+from pin_metaik.kinematics.paths import Motion, motion_of
+
+INFLUENCE = 0.15  # m; bodies farther apart beyond their margin do not slow anything down
+DAMPING = 4.0  # 1/s; speed of approach that a metre of distance beyond the clearance allows
+SHRINKING = 0.5  # of the distance that is left within the clearance, what must be left when the robot stands
+FAR = 1e6  # m; a lever of what has no bounds: it is free only while such a joint stands
+LOOKS = 4  # times that a braking motion is cut in two
+
+Pair: TypeAlias = tuple[int, int, int]
+
+
+class Surroundings(NamedTuple):
+    """What is near a configuration.
+
+    Attributes:
+        rooms: Distance beyond its margin (m) of each pair that may matter, by numbers of its bodies and of the pair.
+        near: (p, 10) and ``carriers`` (p, 2): those within ``INFLUENCE``, as ``kernel.aim`` takes them.
+    """
+
+    rooms: dict[Pair, float]
+    near: NDArray[np.float64]
+    carriers: NDArray[np.int64]
+
+
+class Stops:
+    """What a chain's robot has around it, and whether it can stop there.
+
+    A body moves, while coordinates change by |dx_j|, at most by the sum of its levers L_j times |dx_j|, whatever the
+    configuration: L_j is the length of the way along the links from joint j to the farthest point of the body, 1 for a
+    joint that slides. Two bodies come nearer by the sum over the joints that move the one against the other. So a pair
+    that is farther apart than this at the two ends of a motion, both distances added up, does not touch in between; and
+    what cannot be told so is looked at in the middle.
+
+    Attributes:
+        chain: The chain.
+        world: The world; it may change between two ticks.
+        clearance: Distance beyond the margins that is kept when nothing forces it down, m.
+    """
+
+    def __init__(self, chain: Chain, world: CollisionWorld, clearance: float) -> None:
+        self.chain, self.world, self.clearance = chain, world, clearance
+        self._checker: Checker | None = None
+        self.moves = _moves(chain)
+        self._own, self._against = np.empty((0, chain.n)), np.empty((0, chain.n))
+
+    @property
+    def checker(self) -> Checker:
+        """The checks as they are laid out now; the levers follow them."""
+        checker = self.world.checker
+        if checker is not self._checker:
+            bodies, nothing = checker.solids.moving, np.zeros(self.chain.n)
+            levers = [_levers(self.chain, body.joint, _extent(body.placement, body.solid.box)) for body in bodies]
+
+            def apart(i: int, j: int) -> NDArray[np.float64]:
+                """Levers of body i, of the joints that do not move body j as well."""
+                return sum((lever for joint, lever in levers[i].items() if joint not in levers[j]), nothing)
+
+            own = [apart(i, j) + apart(j, i) for i, j in checker.asked.own.tolist()]
+            self._own = np.array(own).reshape(-1, self.chain.n)
+            self._against = np.array([sum(by.values(), nothing) for by in levers]).reshape(-1, self.chain.n)
+            self._checker = checker
+        return checker
+
+    def around(self, q: NDArray[np.float64], way: NDArray[np.float64]) -> Surroundings:
+        """Distances at q (nq,) of the pairs that come near, or may until coordinates have changed by way (n,)."""
+        checker = self.checker
+        own, against = self._own @ way + self.clearance, self._against @ way + self.clearance
+        most = max(INFLUENCE, own.max(initial=0.0), against.max(initial=0.0))
+        placed = checker.solids.place(q)
+        rooms: dict[Pair, float] = {}
+        rows, carriers = [], []
+        found = placed.near(checker.asked, most)
+        for (i, j, k), least in zip(found, placed.least[: len(found)].tolist(), strict=True):
+            needed = max(INFLUENCE, float(own[k] if k >= 0 else against[i]))
+            if least - checker.margin_of(i, j, k) > needed:
+                continue
+            room = rooms[i, j, k] = checker.room(placed, i, j, k, needed)
+            normal = placed.normal
+            if room < INFLUENCE and 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none
+                rows.append([*normal, *placed.points[0], *placed.points[1], DAMPING * (room - self.clearance)])
+                carriers.append([checker.joint_of(i), checker.joint_of(j)])
+        return Surroundings(
+            rooms, np.array(rows).reshape(-1, 10), np.array(carriers, dtype=np.int64).reshape(-1, 2)
+        )
+
+    def free(self, rooms: dict[Pair, float], stopping: Stopping) -> bool:
+        """Whether a braking motion is proved free, and ends not much nearer to anything than it begins.
+
+        Args:
+            rooms: Distances where it begins, of all pairs that it may bring together.
+            stopping: The motion.
+        """
+        way = np.abs(stopping.at(math.inf) - stopping.x)
+        own, against = self._own @ way, self._against @ way
+        pending = {}
+        for pair, room in rooms.items():
+            travel = float(own[pair[2]] if pair[2] >= 0 else against[pair[0]])
+            if travel > 0.0 and room - travel < SHRINKING * min(self.clearance, room):
+                pending[pair] = room
+        if not pending:
+            return True
+        ends = self._rooms(stopping.q(math.inf), list(pending))
+        for pair, room in pending.items():
+            if ends[pair] <= room if room <= 0.0 else ends[pair] < SHRINKING * min(self.clearance, room):
+                return False
+        pending = {pair: room for pair, room in pending.items() if room > 0.0}  # what collides may part
+        return self._free(stopping, (0.0, pending), (stopping.ticks, ends), LOOKS)
+
+    def _free(
+        self, stopping: Stopping, a: tuple[float, dict[Pair, float]], b: tuple[float, dict[Pair, float]], looks: int
+    ) -> bool:
+        """The same between two ticks, where the distances of the pairs are known."""
+        way = np.abs(stopping.at(b[0]) - stopping.at(a[0]))
+        left = [
+            (i, j, k)
+            for i, j, k in a[1]
+            if a[1][i, j, k] + b[1][i, j, k] <= float((self._own[k] if k >= 0 else self._against[i]) @ way)
+        ]
+        if not left:
+            return True
+        tick = math.floor(0.5 * (a[0] + b[0]))
+        if looks == 0 or tick in (a[0], b[0]):
+            return False
+        middle = self._rooms(stopping.q(tick), left)
+        if min(middle.values()) <= 0.0:
+            return False
+        first = a[0], {pair: a[1][pair] for pair in left}
+        return self._free(stopping, first, (tick, middle), looks - 1) and self._free(
+            stopping, (tick, middle), b, looks - 1
+        )
+
+    def _rooms(self, q: NDArray[np.float64], pairs: list[Pair]) -> dict[Pair, float]:
+        checker = self.checker
+        placed = checker.solids.place(q)
+        return {pair: checker.room(placed, *pair, needed=INFLUENCE) for pair in pairs}
+
+
+class Stopping:
+    """The motion of a chain that goes at some speeds for one tick and brakes from then on.
+
+    Attributes:
+        x: (n,) where it begins.
+        ticks: After which it stands.
+    """
+
+    def __init__(
+        self, chain: Chain, q: NDArray[np.float64], v: NDArray[np.float64], dv: NDArray[np.float64], dt: float
+    ) -> None:
+        from pin_metaik.motion.kernel import stopping
+
+        self.x, self.ticks = chain.x(q), float(np.floor(np.abs(v) / dv).max() + 1.0)
+        self._chain, self._q, self._given, self._stopping = chain, q, (v, dv, dt), stopping
+
+    def at(self, tick: float) -> NDArray[np.float64]:
+        """Coordinates (n,) after so many ticks."""
+        x = np.empty_like(self.x)
+        self._stopping(self.x, *self._given, tick, x)
+        return x
+
+    def q(self, tick: float) -> NDArray[np.float64]:
+        """The configuration (nq,) after so many ticks."""
+        return self._chain.q(self.at(tick), self._q)
+
+
+def _extent(placement: pin.SE3, box: NDArray[np.float64]) -> float:
+    """How far the ball around a body reaches from the origin of the joint that carries it, m."""
+    return float(np.linalg.norm(placement.act(box[:3])) + box[6])
+
+
+def _levers(chain: Chain, carrier: int, extent: float) -> dict[int, NDArray[np.float64]]:
+    """Levers (n,) of a body by coordinate, of each joint that moves it; m for a turn, 1 for a slide."""
+    model, reach = chain.model, extent
+    columns = {int(j): column for column, j in enumerate(chain.coordinates.joints)}
+    found: dict[int, NDArray[np.float64]] = {}
+    for joint in reversed(list(model.supports[carrier])[1:]):
+        leader = leader_of(model, joint)
+        if leader in columns:
+            motion, column = motion_of(model, joint), columns[leader]
+            found[joint] = np.zeros(chain.n)
+            found[joint][column] = abs(motion.scale) * (reach if motion.rotates else 1.0)
+            if not motion.rotates:
+                reach += _farthest(motion, chain.limits.lower[column], chain.limits.upper[column])
+        else:
+            reach += _slide(model, joint)
+        reach += float(np.linalg.norm(model.jointPlacements[joint].translation))
+    return found
+
+
+def _slide(model: pin.Model, joint: int) -> float:
+    """How far a joint that is no coordinate may have slid, wherever it is held; m."""
+    leader = model.joints[leader_of(model, joint)]
+    if leader.shortname() == "JointModelSpherical":
+        return 0.0
+    if leader.nv != 1:
+        return FAR
+    motion = motion_of(model, joint)
+    lower, upper = model.lowerPositionLimit[leader.idx_q], model.upperPositionLimit[leader.idx_q]
+    return 0.0 if motion.rotates else _farthest(motion, lower, upper)
+
+
+def _farthest(motion: Motion, lower: float, upper: float) -> float:
+    """The farthest that a joint slides while what it follows is inside limits, m."""
+    return min(max(abs(motion.scale * end + motion.shift) for end in (lower, upper)), FAR)
+
+
+def _moves(chain: Chain) -> NDArray[np.int64]:
+    """(joints, S) 1 where a row of the chain's paths moves what a joint carries; a joint on two paths has one row."""
+    model, paths = chain.model, chain.paths
+    moves = np.zeros((model.njoints, len(paths.joints)), dtype=np.int64)
+    leaders = {int(j) for j in chain.coordinates.joints}
+    done: set[int] = set()
+    row = 0
+    for frame in chain.frame_ids:
+        for joint in list(model.supports[model.frames[frame].parentJoint])[1:]:
+            if leader_of(model, joint) not in leaders:
+                continue
+            if joint not in done:
+                moves[[joint in list(supports) for supports in model.supports], row] = 1
+            done.add(joint)
+            row += 1
+    return moves
