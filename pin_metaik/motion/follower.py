@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import array, checked, instance
+from pin_metaik.arguments import checked
 from pin_metaik.collision import CollisionWorld
-from pin_metaik.errors import InvalidConfiguration, InvalidSetting
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik import IKProblem, solve_ik_all
 from pin_metaik.ik.problem import check_world
 from pin_metaik.ik.target import TargetLike
@@ -19,21 +20,17 @@ from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.model import as_configuration
 from pin_metaik.motion.limits import MotionLimits
 from pin_metaik.motion.step import FollowerStep, Following
-from pin_metaik.motion.stops import Stopping, Stops
+from pin_metaik.motion.stops import Stopping, Stops, Surroundings
 from pin_metaik.optimize.settings import positive
 from pin_metaik.randomness import Rng
 
 SHARES = 1.0, 0.5, 0.25, 0.1  # of the change of speed, tried one after the other where bodies are near
 POSTURE_RATE = 2.0  # 1/s at which what the targets leave free returns to the posture
 LOST = 0.5  # of the square of an error: where no direction makes up more than the rest, there is none
-NOTHING_NEAR = np.empty((0, 10)), np.empty((0, 2), dtype=np.int64)
-
-
-class Goal(NamedTuple):
-    """What a tick is after: the targets, and what of them counts; as the compiled loops take them."""
-
-    tasks: NDArray[np.float64]
-    rows: NDArray[np.int64]
+SWITCHES = 32  # solutions to choose from, at most
+THERE = 1e-9  # rad or m from a configuration that is moved to
+GENTLE = 0.25  # of the greatest speed, at most, towards the posture
+NOTHING_NEAR = Surroundings({}, np.empty((0, 10)), np.empty((0, 2), dtype=np.int64))
 
 
 @checked
@@ -118,19 +115,21 @@ class Follower:
         self.v = np.zeros(chain.n)
         self._dt = 1.0 / self.rate
         self._motion = np.array([limits.velocity, limits.acceleration * self._dt, np.zeros(chain.n)])
+        self._gentle = GENTLE * limits.velocity
         self._stops = None if world is None else Stops(chain, world, clearance)
         self._moves = np.zeros((chain.model.njoints, len(chain.paths.joints)), dtype=np.int64)
         if self._stops is not None:
             self._moves = self._stops.moves
         self._out, self._sizes = np.empty((3, chain.n)), np.empty(2)
-        self._before: Goal | None = None
-        self._aim, self._head, self._judge = _loops()
+        self._before: IKProblem | None = None
+        self._loops = _loops()
 
     def step(self, target: TargetLike | Sequence[TargetLike], q: ArrayLike) -> FollowerStep:
         """One tick towards a target.
 
         Args:
-            target: As for ``solve_ik``; a target that is where it was one tick before stands, one that is not moves.
+            target: As for ``solve_ik``. Its speed is taken from where it was one tick ago; targets that come less often
+                than ticks are best interpolated.
             q: (nq,) where the robot is: at first the measured configuration, then what the last step returned.
 
         Raises:
@@ -140,29 +139,140 @@ class Follower:
         at = as_configuration(self.chain.model, q)
         chain = self.chain.at(at)
         problem = IKProblem.of(chain, target)
-        goal = Goal(problem.tasks, problem.rows)
-        before, self._before = self._before, goal
-        if before is None or before.rows is not goal.rows:
-            before = goal
+        before, self._before = self._before, problem
+        if before is None or before.rows is not problem.rows:
+            before = problem
         x = chain.x(at)
         if self.posture is not None:
-            self._motion[2] = POSTURE_RATE * chain.limits.way(x, chain.x(self.posture))
-        around = None if self._stops is None else self._stops.around(at, self._farthest())
-        near, carriers = NOTHING_NEAR if around is None else around[1:]
-        lost = self._aim(
-            chain.bare, before.tasks, *goal, x, self.v, self._motion, self._dt, near, carriers, self._moves, self._out
-        )
-        share = 1.0 if around is None else self._slowed(chain, at, around.rooms)
-        after = self._taken(chain, at, x, share)
-        met = self._judge(chain.bare, *goal, chain.x(after), self._sizes)
-        stopped = tuple(name for name, at_limit in zip(chain.names, self._out[2].tolist(), strict=True) if at_limit)
-        held = share < 1.0 or bool(len(near) and self._near_stops(near))
+            wish = POSTURE_RATE * chain.limits.way(x, chain.x(self.posture))
+            self._motion[2] = np.clip(wish, -self._gentle, self._gentle)
+        around = self._around(at)
+        lost, pushed = self._loops.aim(
+            chain.bare, before.tasks, problem.tasks, problem.rows, x, self.v, self._motion, self._dt,
+            around.near, around.carriers, self._moves, self._out,
+        )  # fmt: skip
+        share, after = self._go(chain, at, x, around)
+        met = self._loops.judge(chain.bare, problem.tasks, problem.rows, chain.x(after), self._sizes)
+        stopped = self._stopped()
         if met:
             status = Following.ON_TARGET
-        elif held:
+        elif share < 1.0 or pushed:
             status = Following.NEAR_COLLISION
-        elif stopped and lost > LOST:
-            status = Following.AT_LIMITS
+        elif lost > LOST:
+            status = Following.AT_LIMITS if stopped else Following.NO_DIRECTION
         else:
-            status = Following.NO_DIRECTION if lost > LOST else Following.UNDER_WAY
-        return FollowerStep(after, self.v.copy(), status, *self._sizes.tolist(), share, stopped)
+            status = Following.UNDER_WAY
+        position, orientation = self._sizes.tolist()
+        return FollowerStep(after, self.v.copy(), status, position, orientation, share, stopped)
+
+    def move(self, goal: ArrayLike, q: ArrayLike) -> FollowerStep:
+        """One tick towards a configuration, in the joints themselves: all begin and end to move together, as a rule.
+
+        Args:
+            goal: (nq,) where to, brought inside the limits; joints outside the chain stay as they are.
+            q: (nq,) where the robot is, as for ``step``.
+
+        Raises:
+            InvalidConfiguration: If ``goal`` or ``q`` is not a configuration of the model.
+        """
+        at = as_configuration(self.chain.model, q)
+        chain = self.chain.at(at)
+        self._before = None
+        x, end = chain.x(at), chain.x(chain.configuration(goal))
+        around = self._around(at)
+        way = chain.limits.way(x, end)
+        self._loops.head(chain.bare, way, x, self.v, self._motion, self._dt, self._out)
+        share, after = self._go(chain, at, x, around)
+        there = bool((np.abs(chain.limits.way(chain.x(after), end)) <= THERE).all())
+        status = Following.ON_TARGET if there else Following.UNDER_WAY if share == 1.0 else Following.NEAR_COLLISION
+        return FollowerStep(after, self.v.copy(), status, math.nan, math.nan, share)
+
+    def stop(self, q: ArrayLike) -> FollowerStep:
+        """One tick of braking, every joint as hard as its acceleration allows.
+
+        Args:
+            q: (nq,) where the robot is, as for ``step``.
+
+        Raises:
+            InvalidConfiguration: If ``q`` is not a configuration of the model.
+        """
+        return self.move(q, q)
+
+    def reset(self) -> None:
+        """Forget speeds and targets: the robot stands, and begins anew."""
+        self.v, self._before = np.zeros(self.chain.n), None
+
+    def switch(
+        self, target: TargetLike | Sequence[TargetLike], q: ArrayLike, *, rng: Rng = None
+    ) -> NDArray[np.float64] | None:
+        """Another configuration (nq,) that meets a target: where to ``move`` when a branch ends.
+
+        It takes milliseconds, or longer in a world: ask for it while the robot stands. Nothing is said of the way there:
+        ``move`` stops before it collides.
+
+        Args:
+            target: As for ``solve_ik``.
+            q: (nq,) where the robot is.
+            rng: Seed or generator; ``None`` is a fixed seed.
+
+        Returns:
+            Of the solutions found, in a world those free of collisions, the one that takes the joints the least time;
+            None, if there is none.
+
+        Raises:
+            InvalidTarget: If the target is none.
+            InvalidConfiguration: If q is not a configuration of the model.
+        """
+        found = solve_ik_all(self.chain, target, q, limit=SWITCHES, world=self.world, rng=rng)
+        if not len(found):
+            return None
+        ways = self.chain.limits.way(self.chain.x(as_configuration(self.chain.model, q)), found.x)
+        nearest: NDArray[np.float64] = found.q[np.argmin((np.abs(ways) / self.limits.velocity).max(axis=1))]
+        return nearest
+
+    def _around(self, q: NDArray[np.float64]) -> Surroundings:
+        """What is near a configuration (nq,), as far as the robot may go before it stands."""
+        if self._stops is None:
+            return NOTHING_NEAR
+        fastest = np.minimum(np.abs(self.v) + self._motion[1], self.limits.velocity)
+        return self._stops.around(q, self._stopping(q, fastest).way(0.0, math.inf))
+
+    def _stopping(self, q: NDArray[np.float64], v: NDArray[np.float64]) -> Stopping:
+        return Stopping(self.chain, q, v, self._motion[1], self._dt)
+
+    def _go(
+        self, chain: Chain, q: NDArray[np.float64], x: NDArray[np.float64], around: Surroundings
+    ) -> tuple[float, NDArray[np.float64]]:
+        """Take the speeds of the tick as far as the robot can stop after it: which part, and where it leads (nq,)."""
+        wanted, braked = self._out[0], self._out[1]
+        share = 1.0
+        if around.rooms and self._stops is not None:
+            tries = (
+                s for s in SHARES if self._stops.free(around.rooms, self._stopping(q, braked + s * (wanted - braked)))
+            )
+            share = next(tries, 0.0)
+        self.v = wanted.copy() if share == 1.0 else braked + share * (wanted - braked)
+        limits = chain.limits
+        return share, chain.q(np.minimum(np.maximum(x + self._dt * self.v, limits.lower), limits.upper), q)
+
+    def _stopped(self) -> tuple[str, ...]:
+        """Names of the joints that stand at limits which the way leads beyond."""
+        if not self._out[2].any():
+            return ()
+        return tuple(name for name, stopped in zip(self.chain.names, self._out[2].tolist(), strict=True) if stopped)
+
+
+class _Loops(NamedTuple):
+    """The compiled loops, without the frame around them."""
+
+    aim: Callable[..., tuple[float, int]]
+    head: Callable[..., None]
+    judge: Callable[..., bool]
+
+
+@cache
+def _loops() -> _Loops:
+    """Imported late: what compiles them takes 0.4 s to import."""
+    from pin_metaik.motion import kernel
+
+    return _Loops(*(cast(Any, loop).compiled() for loop in (kernel.aim, kernel.head, kernel.judge)))

@@ -35,8 +35,10 @@ from pin_metaik.kinematics.kernel.layout import (
 from pin_metaik.kinematics.kernel.scratch import Scratch
 
 FLOOR = 1e-4  # m^2 or rad^2; damping that is always there: singular values below its root, 0.01, are hardly used
-LEVER = 0.3  # m or rad; damping per error: where the target is out of reach the arm settles instead of swinging
-PUSH = 10.0  # what 1 m/s too fast towards an obstacle counts, in m/s of the tip
+GENTLY = 0.5  # of the acceleration, to brake for a target: the rest is for ways that turn out to bend
+LEVER = 0.5  # m or rad; damping per error: where the target is out of reach the arm settles instead of swinging
+YIELDING = 1e-3  # damping of what other joints do for those that may not move as they should
+PUSH = 100.0  # what 1 m/s too fast towards an obstacle counts, in m/s of the tip
 ROUNDS = 3  # of solutions, in each of which obstacles that are still approached too fast are added
 
 SLOW = 1e-9  # m/s
@@ -110,6 +112,7 @@ class TickScratch(NamedTuple):
         descent: Of the least squares, with room for rows of obstacles.
         error: (m,) of the tips.
         lead: (m,) by how much the targets moved since the last tick.
+        best: (n,) speeds that would be best.
         low: (n,) slowest speeds.
         high: (n,) fastest speeds.
         gaps: (p, n + 1) growth of the distances by coordinate; and, from 1 on, where among the rows it has come to be.
@@ -118,6 +121,7 @@ class TickScratch(NamedTuple):
     descent: Scratch
     error: Floats
     lead: Floats
+    best: Floats
     low: Floats
     high: Floats
     gaps: Floats
@@ -131,7 +135,7 @@ def tick_scratch(n: int, m: int, S: int, p: int) -> TickScratch:
         np.empty((S, 3)), np.empty((S, 3)), np.empty(12), np.empty(6), np.empty(6), np.empty((n, 6)), np.empty(a),
         np.empty((n, a)), np.empty((a, a)), np.empty(a), np.empty(n), np.empty(n), np.empty(n),
     )  # fmt: skip
-    return TickScratch(descent, np.empty(m), np.empty(m), np.empty(n), np.empty(n), np.empty((p, n + 1)))
+    return TickScratch(descent, np.empty(m), np.empty(m), np.empty(n), np.empty(n), np.empty(n), np.empty((p, n + 1)))
 
 
 @inline
@@ -176,21 +180,34 @@ def spread(block: Floats, x: Floats, near: Near, work: TickScratch) -> None:
 
 @inline
 def approach(way: Floats, most: Floats, dv: Floats, dt: float) -> float:
-    """The share of a way (n,) to go per second, so that every joint can stop at its end."""
+    """The share of a way (n,) to go per second, so that every joint can stop at its end, gently."""
     share = 1.0 / dt
     for j in range(way.shape[0]):
         distance = abs(way[j])
         if distance > 0.0:
-            share = min(share, min(speed_within(distance, dv[j], dt), most[j]) / distance)
+            share = min(share, min(speed_within(distance, GENTLY * dv[j], dt), most[j]) / distance)
     return share
 
 
 @inline
-def rates(J: Floats, low: Floats, high: Floats, wish: Floats, rows: int, work: Scratch) -> None:
-    """Begin the least squares at the allowed speeds nearest to ``wish``, with what these do to the rows."""
+def forget_jumps(J: Floats, most: Floats, dt: float, lead: Floats) -> None:
+    """Targets that moved faster than the joints could carry the tips have jumped: that says nothing of their speed."""
+    jumped = False
+    for a in range(lead.shape[0]):
+        fastest = 0.0
+        for j in range(most.shape[0]):
+            fastest += abs(J[j, a]) * most[j]
+        jumped = jumped or abs(lead[a]) > dt * fastest
+    if jumped:
+        lead[:] = 0.0
+
+
+@inline
+def begin(J: Floats, low: Floats, high: Floats, start: Floats, rows: int, work: Scratch) -> None:
+    """Begin least squares at the speeds nearest to ``start`` inside bounds, and add what they do to the rows."""
     x, r = work.x, work.r
     for j in range(x.shape[0]):
-        x[j] = min(max(wish[j], low[j]), high[j])
+        x[j] = min(max(start[j], low[j]), high[j])
     for a in range(rows):
         for j in range(x.shape[0]):
             r[a] += J[j, a] * x[j]
@@ -209,47 +226,70 @@ def aim_in(
     near: Near,
     out: Floats,
     work: TickScratch,
-) -> float:
+) -> tuple[float, int]:
     """``aim`` in room that was made for it."""
     chain = unpack(block)
     bounds, most, dv, wish = chain.bounds, motion[0], motion[1], motion[2]
-    descent, error, low, high, gaps = work.descent, work.error, work.low, work.high, work.gaps
-    J, r, dx = descent.J, descent.r, descent.dx
+    descent, error, best, low, high, gaps = work.descent, work.error, work.best, work.low, work.high, work.gaps
+    J, r = descent.J, descent.r
     n, m, p = x.shape[0], rows.shape[0], near.rows.shape[0]
     if p > 0:
         spread(block, x, near, work)
     led(before, goals, rows, work)
     square, _ = evaluate(chain.arm, goals, rows, x, descent, have_balls(goals))
-    damping = FLOOR + LEVER * math.sqrt(square)
     for a in range(m):
         error[a] = r[a]
-    # The way to the target inside the limits, and which part of its error no way makes up.
-    copy(x, descent.x)
-    step(bounds, m, damping, descent)
+    # Which part of the error no direction makes up that the joints can go, those at their limits only inward.
     for j in range(n):
-        dx[j] = descent.x[j] - x[j]
-        held = descent.held[j] == 1.0
-        out[STOPPED, j] = float(held and x[j] <= bounds.lower[j] + AT) + float(held and x[j] >= bounds.upper[j] - AT)
+        low[j] = x[j] if x[j] <= bounds.lower[j] + AT else -np.inf
+        high[j] = x[j] if x[j] >= bounds.upper[j] - AT else np.inf
+    copy(x, descent.x)
+    step(Bounds(low, high, bounds.winds), m, FLOOR, descent)
     left = 0.0
     for a in range(m):
         rest = error[a]
         for j in range(n):
-            rest += J[j, a] * dx[j]
+            rest += J[j, a] * (descent.x[j] - x[j])
         left += rest * rest
-    share = approach(dx, most, dv, dt)
-    # Of the speeds that are allowed those nearest to the target's own and that share of the way.
+    for j in range(n):
+        out[STOPPED, j] = descent.held[j]
+    # The way to where the target was, inside the limits: the target's own speed comes on top.
+    forget_jumps(J, most, dt, work.lead)
+    behind = 0.0
+    for a in range(m):
+        error[a] += work.lead[a]
+        r[a] = error[a]
+        behind += error[a] * error[a]
+    damping = FLOOR + LEVER * math.sqrt(behind)
+    copy(x, descent.x)
+    step(bounds, m, damping, descent)
+    for j in range(n):
+        best[j] = descent.x[j] - x[j]
+    share = approach(best, most, dv, dt)
+    # The speeds that are best: those that move the tips as the targets move, and that share of the way.
+    for j in range(n):
+        low[j], high[j] = -most[j], most[j]
+    for a in range(m):
+        r[a] = -work.lead[a] / dt
+    begin(J, low, high, wish, m, descent)
+    step(Bounds(low, high, bounds.winds), m, FLOOR, descent)
+    for j in range(n):
+        best[j] = descent.x[j] + share * best[j]
+    # Those that are allowed and move the tips the most like it.
     allowed(bounds, x, v, most, dv, dt, low, high)
     active = 0
     for i in range(p):
         gaps[i, n] = 0.0
     for _ in range(ROUNDS):
         for a in range(m):
-            r[a] = share * error[a] - work.lead[a] / dt
+            r[a] = 0.0
+            for j in range(n):
+                r[a] -= J[j, a] * best[j]
         for i in range(p):
             if gaps[i, n] > 0.0:
                 r[m + int(gaps[i, n]) - 1] = PUSH * near.rows[i, APPROACH]
-        rates(J, low, high, wish, m + active, descent)
-        step(Bounds(low, high, bounds.winds), m + active, damping, descent)
+        begin(J, low, high, best, m + active, descent)
+        step(Bounds(low, high, bounds.winds), m + active, YIELDING, descent)
         known = active
         for i in range(p):
             growth = near.rows[i, APPROACH]
@@ -265,12 +305,12 @@ def aim_in(
     for j in range(n):
         out[SPEED, j] = descent.x[j]
         out[BRAKED, j] = min(max(braked(v[j], dv[j]), low[j]), high[j])
-    return left / square if square > 0.0 else 0.0
+    return left / square if square > 0.0 else 0.0, active
 
 
 @jit(
-    "f8(f8[::1], f8[:,::1], f8[:,::1], i8[:,::1], f8[::1], f8[::1], f8[:,::1], f8, f8[:,::1], i8[:,::1], i8[:,::1], "
-    "f8[:,::1])"
+    "Tuple((f8, i8))(f8[::1], f8[:,::1], f8[:,::1], i8[:,::1], f8[::1], f8[::1], f8[:,::1], f8, f8[:,::1], i8[:,::1], "
+    "i8[:,::1], f8[:,::1])"
 )
 def aim(
     block: Floats,
@@ -285,7 +325,7 @@ def aim(
     carriers: Ints,
     moves: Ints,
     out: Floats,
-) -> float:
+) -> tuple[float, int]:
     """The speeds of one tick towards targets.
 
     Args:
@@ -295,8 +335,7 @@ def aim(
         rows: (m, 2) what of them counts.
         x: (n,) coordinates.
         v: (n,) speeds of the last tick, rad/s or m/s.
-        motion: (3, n) greatest speeds, greatest change of speed in a tick, and speeds that are wished for where the
-            targets leave them free.
+        motion: (3, n) greatest speeds, greatest change of speed in a tick, and speeds where targets leave them free.
         dt: Length of a tick, s.
         near: (p, NEARBY) what comes near.
         carriers: (p, 2) what carries it.
@@ -304,7 +343,8 @@ def aim(
         out: (3, n) filled in, rows SPEED, BRAKED and STOPPED.
 
     Returns:
-        Which part of the square of the error no direction makes up that the joints can go.
+        Which part of the square of the error no direction makes up that the joints can go; and how many of the rows of
+        ``near`` change the speeds.
     """
     S, n, _ = sizes_of(block)
     return aim_in(

@@ -1,9 +1,9 @@
-"""Whether a robot that brakes stops before anything collides: by measured distances, and bounds on how far bodies go."""
+"""Whether a robot that brakes stops before anything collides: by distances, and bounds on how far bodies go."""
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias, cast
 
 import numpy as np
 import pinocchio as pin
@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.collision.checker import Checker
 from pin_metaik.kinematics import Chain
-from pin_metaik.kinematics.model import leader_of
-from pin_metaik.kinematics.paths import Motion, motion_of
+from pin_metaik.kinematics.paths import Motion, leader_of, motion_of
 
 INFLUENCE = 0.15  # m; bodies farther apart beyond their margin do not slow anything down
 DAMPING = 4.0  # 1/s; speed of approach that a metre of distance beyond the clearance allows
@@ -94,9 +93,7 @@ class Stops:
             if room < INFLUENCE and 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none
                 rows.append([*normal, *placed.points[0], *placed.points[1], DAMPING * (room - self.clearance)])
                 carriers.append([checker.joint_of(i), checker.joint_of(j)])
-        return Surroundings(
-            rooms, np.array(rows).reshape(-1, 10), np.array(carriers, dtype=np.int64).reshape(-1, 2)
-        )
+        return Surroundings(rooms, np.array(rows).reshape(-1, 10), np.array(carriers, dtype=np.int64).reshape(-1, 2))
 
     def free(self, rooms: dict[Pair, float], stopping: Stopping) -> bool:
         """Whether a braking motion is proved free, and ends not much nearer to anything than it begins.
@@ -105,7 +102,7 @@ class Stops:
             rooms: Distances where it begins, of all pairs that it may bring together.
             stopping: The motion.
         """
-        way = np.abs(stopping.at(math.inf) - stopping.x)
+        way = stopping.way(0.0, math.inf)
         own, against = self._own @ way, self._against @ way
         pending = {}
         for pair, room in rooms.items():
@@ -125,7 +122,7 @@ class Stops:
         self, stopping: Stopping, a: tuple[float, dict[Pair, float]], b: tuple[float, dict[Pair, float]], looks: int
     ) -> bool:
         """The same between two ticks, where the distances of the pairs are known."""
-        way = np.abs(stopping.at(b[0]) - stopping.at(a[0]))
+        way = stopping.way(a[0], b[0])
         left = [
             (i, j, k)
             for i, j, k in a[1]
@@ -164,13 +161,19 @@ class Stopping:
         from pin_metaik.motion.kernel import stopping
 
         self.x, self.ticks = chain.x(q), float(np.floor(np.abs(v) / dv).max() + 1.0)
-        self._chain, self._q, self._given, self._stopping = chain, q, (v, dv, dt), stopping
+        self._chain, self._q, self._given = chain, q, (v, dv, dt)
+        self._stopping = cast(Any, stopping).compiled()  # a frame less
 
     def at(self, tick: float) -> NDArray[np.float64]:
         """Coordinates (n,) after so many ticks."""
         x = np.empty_like(self.x)
         self._stopping(self.x, *self._given, tick, x)
         return x
+
+    def way(self, a: float, b: float) -> NDArray[np.float64]:
+        """By how much (n,) the coordinates change between two ticks."""
+        way: NDArray[np.float64] = np.abs(self.at(b) - self.at(a))
+        return way
 
     def q(self, tick: float) -> NDArray[np.float64]:
         """The configuration (nq,) after so many ticks."""
