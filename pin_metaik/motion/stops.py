@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.collision.checker import Checker
+from pin_metaik.collision.solids import Placed
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.paths import Motion, leader_of, motion_of
 
-INFLUENCE = 0.15  # m; bodies farther apart beyond their margin do not slow anything down
+STALE = 0.2  # of a distance that bodies may have moved until it is measured again
+INFLUENCE = 0.1  # m; bodies farther apart beyond their margin do not slow anything down
 DAMPING = 4.0  # 1/s; speed of approach that a metre of distance beyond the clearance allows
 SHRINKING = 0.5  # of the distance that is left within the clearance, what must be left when the robot stands
 FAR = 1e6  # m; a lever of what has no bounds: it is free only while such a joint stands
@@ -36,6 +38,22 @@ class Surroundings(NamedTuple):
     carriers: NDArray[np.int64]
 
 
+class Known(NamedTuple):
+    """A distance that was measured.
+
+    Attributes:
+        room: Beyond the margin, m.
+        gone: (n,) the way that the coordinates had gone by then, each by itself, rad or m.
+        row: What is near, as ``kernel.aim`` takes it; None where two surfaces cross.
+        carriers: Numbers of the joints that carry the two.
+    """
+
+    room: float
+    gone: NDArray[np.float64]
+    row: list[float] | None
+    carriers: tuple[int, int]
+
+
 class Stops:
     """What a chain's robot has around it, and whether it can stop there.
 
@@ -43,7 +61,8 @@ class Stops:
     configuration: L_j is the length of the way along the links from joint j to the farthest point of the body, 1 for a
     joint that slides. Two bodies come nearer by the sum over the joints that move the one against the other. So a pair
     that is farther apart than this at the two ends of a motion, both distances added up, does not touch in between; and
-    what cannot be told so is looked at in the middle.
+    what cannot be told so is looked at in the middle. For the same reason a distance that was measured some ticks ago is
+    good for a while, less what the bodies may have moved since.
 
     Attributes:
         chain: The chain.
@@ -56,6 +75,9 @@ class Stops:
         self._checker: Checker | None = None
         self.moves = _moves(chain)
         self._own, self._against = np.empty((0, chain.n)), np.empty((0, chain.n))
+        self._known: dict[Pair, Known] = {}
+        self._at: NDArray[np.float64] | None = None
+        self._gone = np.zeros(chain.n)
 
     @property
     def checker(self) -> Checker:
@@ -73,27 +95,56 @@ class Stops:
             self._own = np.array(own).reshape(-1, self.chain.n)
             self._against = np.array([sum(by.values(), nothing) for by in levers]).reshape(-1, self.chain.n)
             self._checker = checker
+            self._known.clear()
         return checker
 
     def around(self, q: NDArray[np.float64], way: NDArray[np.float64]) -> Surroundings:
         """Distances at q (nq,) of the pairs that come near, or may until coordinates have changed by way (n,)."""
         checker = self.checker
+        self._went_to(q)
         own, against = self._own @ way + self.clearance, self._against @ way + self.clearance
         most = max(INFLUENCE, own.max(initial=0.0), against.max(initial=0.0))
         placed = checker.solids.place(q)
         rooms: dict[Pair, float] = {}
-        rows, carriers = [], []
+        near: list[Known] = []
         found = placed.near(checker.asked, most)
         for (i, j, k), least in zip(found, placed.least[: len(found)].tolist(), strict=True):
             needed = max(INFLUENCE, float(own[k] if k >= 0 else against[i]))
             if least - checker.margin_of(i, j, k) > needed:
                 continue
-            room = rooms[i, j, k] = checker.room(placed, i, j, k, needed)
-            normal = placed.normal
-            if room < INFLUENCE and 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none
-                rows.append([*normal, *placed.points[0], *placed.points[1], DAMPING * (room - self.clearance)])
-                carriers.append([checker.joint_of(i), checker.joint_of(j)])
-        return Surroundings(rooms, np.array(rows).reshape(-1, 10), np.array(carriers, dtype=np.int64).reshape(-1, 2))
+            known = self._known.get((i, j, k))
+            if known is None or (drift := float(self._lever(i, k) @ (self._gone - known.gone))) > STALE * known.room:
+                known, drift = self._measured(placed, i, j, k), 0.0
+                self._known[i, j, k] = known
+            rooms[i, j, k] = known.room - drift
+            if known.row is not None and known.room < INFLUENCE:
+                near.append(known)
+        rows = np.array([known.row for known in near]).reshape(-1, 10)
+        carriers = np.array([known.carriers for known in near], dtype=np.int64).reshape(-1, 2)
+        return Surroundings(rooms, rows, carriers)
+
+    def _went_to(self, q: NDArray[np.float64]) -> None:
+        """Add to the way that the coordinates have gone; forget distances if anything else has moved."""
+        chain = self.chain
+        if self._at is None or not np.array_equal(chain.q(chain.x(self._at), q), self._at):
+            self._known.clear()
+        else:
+            self._gone = self._gone + np.abs(chain.limits.way(chain.x(self._at), chain.x(q)))
+        self._at = q.copy()
+
+    def _measured(self, placed: Placed, i: int, j: int, k: int) -> Known:
+        """The distance of a pair where it is placed now."""
+        checker = self.checker
+        room, normal = checker.room(placed, i, j, k, self.clearance), placed.normal
+        row = None
+        if 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none
+            row = [*normal, *placed.points[0], *placed.points[1], DAMPING * (room - self.clearance)]
+        return Known(room, self._gone, row, (checker.joint_of(i), checker.joint_of(j)))
+
+    def _lever(self, i: int, k: int) -> NDArray[np.float64]:
+        """How much (n,) a pair comes nearer at most for each rad or m of a coordinate."""
+        lever: NDArray[np.float64] = self._own[k] if k >= 0 else self._against[i]
+        return lever
 
     def free(self, rooms: dict[Pair, float], stopping: Stopping) -> bool:
         """Whether a braking motion is proved free, and ends not much nearer to anything than it begins.
@@ -106,7 +157,8 @@ class Stops:
         own, against = self._own @ way, self._against @ way
         pending = {}
         for pair, room in rooms.items():
-            travel = float(own[pair[2]] if pair[2] >= 0 else against[pair[0]])
+            i, _, k = pair
+            travel = float(own[k] if k >= 0 else against[i])
             if travel > 0.0 and room - travel < SHRINKING * min(self.clearance, room):
                 pending[pair] = room
         if not pending:
@@ -123,11 +175,7 @@ class Stops:
     ) -> bool:
         """The same between two ticks, where the distances of the pairs are known."""
         way = stopping.way(a[0], b[0])
-        left = [
-            (i, j, k)
-            for i, j, k in a[1]
-            if a[1][i, j, k] + b[1][i, j, k] <= float((self._own[k] if k >= 0 else self._against[i]) @ way)
-        ]
+        left = [(i, j, k) for i, j, k in a[1] if a[1][i, j, k] + b[1][i, j, k] <= float(self._lever(i, k) @ way)]
         if not left:
             return True
         tick = math.floor(0.5 * (a[0] + b[0]))
@@ -144,7 +192,7 @@ class Stops:
     def _rooms(self, q: NDArray[np.float64], pairs: list[Pair]) -> dict[Pair, float]:
         checker = self.checker
         placed = checker.solids.place(q)
-        return {pair: checker.room(placed, *pair, needed=INFLUENCE) for pair in pairs}
+        return {pair: checker.room(placed, *pair, needed=self.clearance) for pair in pairs}
 
 
 class Stopping:
