@@ -18,11 +18,11 @@ from pin_metaik.ik.problem import check_world
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.model import as_configuration
-from pin_metaik.motion.limits import MotionLimits
 from pin_metaik.motion.step import FollowerStep, Following
 from pin_metaik.motion.stops import Stopping, Stops, Surroundings
 from pin_metaik.optimize.settings import positive
 from pin_metaik.randomness import Rng
+from pin_metaik.timing.limits import MotionLimits
 
 SHARES = 1.0, 0.5, 0.25, 0.1  # of the change of speed, tried one after the other where bodies are near
 POSTURE_RATE = 2.0  # 1/s at which what the targets leave free returns to the posture
@@ -53,11 +53,12 @@ class Follower:
     takes the one that serves the target best.
 
     With a world, each tick is one from which the robot can brake, every joint as hard as its acceleration allows,
-    without a collision: that is proved before the tick is taken, by distances and by how far bodies can move; where the
-    proof fails for all speeds that are tried, it brakes, for which the proof of the tick before still stands. So as long
-    as nothing else moves, and it was started at rest free of collisions, it never collides and its braking never does.
-    Its own joints outside the chain count as standing. What moves by itself is seen where it is at each tick; what comes
-    too fast can hit it. Distances beyond the margin down to ``clearance`` slow it down; nearer it goes only if it must.
+    without a collision: that is proved before the tick is taken, by distances and by how far bodies can move. Where the
+    proof fails for all speeds that are tried, it brakes, for which the proof of the tick before still stands. So it
+    never collides, nor does it when it brakes, as long as nothing else moves, the joints outside the chain included,
+    and it was started at rest and free of collisions. What moves by itself is seen where it is at each tick, and what
+    comes too fast can hit it. Down to ``clearance`` beyond the margin distances slow the robot down; nearer it goes
+    only where it must, and never by more than half of what is left at a time.
 
     If it is given another configuration than its last one (a measured one), (1) and (2) still hold; a joint that is too
     near its limit for its speed brakes as hard as (2) allows, and one that is beyond it goes back. Commands to a
@@ -207,8 +208,8 @@ class Follower:
     ) -> NDArray[np.float64] | None:
         """Another configuration (nq,) that meets a target: where to ``move`` when a branch ends.
 
-        It takes milliseconds, or longer in a world: ask for it while the robot stands. Nothing is said of the way there:
-        ``move`` stops before it collides.
+        It takes milliseconds, or longer in a world: ask for it while the robot stands. Nothing is said of the way
+        there: ``move`` stops before it collides.
 
         Args:
             target: As for ``solve_ik``.

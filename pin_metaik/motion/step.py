@@ -17,7 +17,7 @@ class Following(Enum):
     UNDER_WAY = "under way"
     """It moves as fast as its limits let it; nothing else is in the way."""
     AT_LIMITS = "at limits"
-    """Joints stand at their limits, and the way on leads beyond: here the branch ends. ``Follower.switch`` has others."""
+    """Joints stand at their limits, and the way on leads beyond: here the branch ends; see ``Follower.switch``."""
     NO_DIRECTION = "no direction"
     """The joints cannot go where the target is, not even slowly: a singularity, or the edge of what the arm reaches."""
     NEAR_COLLISION = "near collision"

@@ -61,8 +61,8 @@ class Stops:
     configuration: L_j is the length of the way along the links from joint j to the farthest point of the body, 1 for a
     joint that slides. Two bodies come nearer by the sum over the joints that move the one against the other. So a pair
     that is farther apart than this at the two ends of a motion, both distances added up, does not touch in between; and
-    what cannot be told so is looked at in the middle. For the same reason a distance that was measured some ticks ago is
-    good for a while, less what the bodies may have moved since.
+    what cannot be told so is looked at in the middle. For the same reason a distance that was measured some ticks ago
+    is good for a while, less what the bodies may have moved since.
 
     Attributes:
         chain: The chain.
