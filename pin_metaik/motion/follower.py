@@ -67,8 +67,9 @@ class Follower:
     It moves towards a target by damped least squares with these intervals inside, leads a target that moves by its
     speed since the last tick, and slows down in time so that no joint overshoots. In a singularity the damping lets go
     of the directions that are lost, smoothly, and the target is missed for a while; a target out of reach is approached
-    as near as the linearised arm sees it, without swinging. Jerk is not limited. It never changes to another branch of
-    solutions by itself: where its own ends, ``step`` says so, and ``switch`` and ``move`` lead to another one.
+    as near as the linearised arm sees it, without swinging. Jerk is not limited. It never jumps to another branch of
+    solutions: where its own ends, it goes along the limits as near to the target as it can, and ``step`` says so;
+    ``switch`` and ``move`` lead to another branch.
 
     Attributes:
         chain: The joints to move and the frames to place.

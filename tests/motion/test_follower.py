@@ -171,14 +171,14 @@ def test_at_the_edge_of_the_workspace_it_settles(panda: mik.Chain, beyond: float
 
 
 def test_where_a_branch_ends_it_says_which_joints_and_leads_to_another(ur5: mik.Chain) -> None:
-    chain = mik.Chain(ur5.model, "tool0", limits={"wrist_2_joint": (0.2, 3.0)})
+    chain = mik.Chain(ur5.model, "tool0", limits={"shoulder_pan_joint": (0.0, 6.0)})
     q = home(chain)
-    goal = chain.placements(np.array([0.4, -1.3, 1.6, -1.8, -0.6, 0.3]))[0]  # -0.6 is not allowed, turned over 0.6 is
+    goal = chain.placements(np.array([-0.4, -1.3, 1.6, -1.8, 0.6, 0.3]))[0]  # -0.4 is not allowed, 5.9 is the same
     watched = Watched(chain, mik.MotionLimits.of(chain), q)
     steps = (watched.step(goal) for _ in range(3000))
     step = next(step for step in steps if step.branch_ends)
     assert step.status is mik.Following.AT_LIMITS and step.branch_ends and not step
-    assert step.at_limits == ("wrist_2_joint",)
+    assert step.at_limits == ("shoulder_pan_joint",)
     while watched.v.any():
         watched.keep(watched.follower.stop(watched.q))
     other = watched.follower.switch(goal, watched.q)
