@@ -192,13 +192,17 @@ class Checker:
         return min(best, at, key=lambda one: one.distance)
 
     def room(self, placed: Placed, i: int, j: int, own: int, needed: float) -> float:
-        """A distance (m) beyond its margin that a pair has at least; all of it, where that is not more than needed."""
+        """A distance (m) beyond its margin that a pair has at least; all of it, where that is not more than needed.
+
+        Of bodies that overlap it is below 0, and minus the depth to which the coarse solids do.
+        """
         a, b, c, d = self.levels_of(i, j, own)
         taken = self.margin_of(i, j, own) + ENCLOSED
         room = INEXACT * placed.gap(a, b) - taken
         if room > needed or not self.exact or (a is c and b is d):
             return room
-        return INEXACT * placed.gap(c, d) - taken
+        fine = INEXACT * placed.gap(c, d) - taken
+        return fine if fine > 0.0 else min(fine, room)
 
     def _hulls(self, placed: Placed, i: int, j: int) -> Distance:
         """Distance of the convex hulls of two bodies; minus their depth when they overlap."""
