@@ -104,10 +104,13 @@ def moved(pose: pin.SE3, *by: float) -> pin.SE3:
     return pin.SE3(pose.rotation, pose.translation + by)
 
 
-def circle(centre: pin.SE3, seconds: float, count: int) -> Poses:
-    """On a circle of 0.1 m in the plane y, z, which takes so long once it has sped up for a second; from the bottom."""
+def circle(centre: pin.SE3, seconds: float, count: int, begin: float = 0.0) -> Poses:
+    """On a circle of 0.1 m in the plane y, z, which takes so long once it has sped up for a second.
+
+    It begins at a part of the turn from the lowest point.
+    """
     t = np.arange(count) / RATE
-    angles = 2.0 * np.pi / seconds * np.where(t < 1.0, 0.5 * t * t, t - 0.5)
+    angles = 2.0 * np.pi * (begin + np.where(t < 1.0, 0.5 * t * t, t - 0.5) / seconds)
     return [moved(centre, 0.0, 0.1 * np.sin(a), -0.1 * np.cos(a)) for a in angles]
 
 
@@ -137,10 +140,10 @@ def recorded() -> Iterator[tuple[str, mik.Chain, np.ndarray, Poses]]:
     out = [moved(start, min(0.6, 0.0004 * i), 0.0, 0.0) for i in range(2500)]
     yield "panda, out of reach and back", panda, HOME, [*out, *out[::-1]]
     singular = ur5.placements(SINGULAR)[0]
-    for seconds in (4.0, 8.0):
-        poses = circle(moved(singular, 0.0, 0.0, -0.1), seconds, int(2 * seconds * RATE))
+    for where, quarter in (("beside it", 0.25), ("in it", 0.0)):
+        poses = circle(moved(singular, 0.0, 0.0, -0.1), 4.0, 4000, quarter)
         begin = mik.solve_ik(ur5, poses[0], np.add(SINGULAR, (0.0, 0.0, 0.0, 0.0, 0.3, 0.0))).q
-        yield f"ur5, a circle through its wrist's singularity, {seconds:g} s a turn", ur5, begin, poses
+        yield f"ur5, a circle through its wrist's singularity, begun {where}", ur5, begin, poses
 
 
 def ours(chain: mik.Chain, limits: mik.MotionLimits) -> Tick:

@@ -129,21 +129,26 @@ def test_a_circle_is_followed_to_a_micrometre(name: str, panda: mik.Chain, ur5: 
     assert max(missed[200:]) < 1e-6  # once it has caught up with the circle's speed
 
 
-def test_a_circle_through_the_wrists_singularity_is_missed_by_three_centimetres_at_most(ur5: mik.Chain) -> None:
-    singular = ur5.placements(np.array([0.3, -1.4, 1.7, -1.9, 0.0, 0.4]))[0]
+@pytest.mark.parametrize(("quarter", "least"), [(1, 1e-6), (0, 0.03)], ids=["begun beside it", "begun in it"])
+def test_a_circle_through_the_wrists_singularity(ur5: mik.Chain, quarter: int, least: float) -> None:
+    """From beside it is crossed as if it were not there; begun in it, the wrist across the way has to turn first."""
+    stretched = np.array([0.3, -1.4, 1.7, -1.9, 0.0, 0.4])
+    top = ur5.placements(stretched)[0]  # it is singular, as is the lowest point of the circle
 
     def circle(t: float) -> pin.SE3:
-        angle = 0.5 * np.pi * (0.5 * t * t if t < 1.0 else t - 0.5)  # it speeds up for a second
-        return moved(singular, 0.0, 0.1 * np.sin(angle), -0.1 - 0.1 * np.cos(angle))
+        angle = 0.5 * np.pi * (quarter + 0.5 * t * t if t < 1.0 else quarter + t - 0.5)  # it speeds up for a second
+        return moved(top, 0.0, 0.1 * np.sin(angle), -0.1 - 0.1 * np.cos(angle))
 
-    begin = mik.solve_ik(ur5, circle(0.0), np.array([0.3, -1.4, 1.7, -1.9, 0.3, 0.4]))
+    begin = mik.solve_ik(ur5, circle(0.0), stretched + [0.0, 0.0, 0.0, 0.0, 0.3, 0.0])
+    assert begin
     watched = Watched(ur5, mik.MotionLimits.of(ur5), begin.q)
     steps = [watched.step(circle(i / RATE)) for i in range(2500)]
-    assert min(step.q[4] for step in steps) < 0.0 < max(step.q[4] for step in steps)  # through the singularity
+    assert min(step.q[4] for step in steps) < -0.1 < 0.1 < max(step.q[4] for step in steps)
     missed = np.array([step.position_error for step in steps])
-    assert missed.max() < 0.03
-    assert np.median(missed) < 1e-6
-    assert mik.Following.NO_DIRECTION in {step.status for step in steps}
+    assert missed.max() < least
+    assert missed[1000:].max() < 1e-6
+    if quarter == 0:
+        assert mik.Following.NO_DIRECTION in {step.status for step in steps}
 
 
 def test_a_target_that_jumps_is_reached_without_overshooting_by_much(panda: mik.Chain) -> None:
