@@ -76,7 +76,8 @@ class Stops:
         self.moves = _moves(chain)
         self._own, self._against = np.empty((0, chain.n)), np.empty((0, chain.n))
         self._known: dict[Pair, Known] = {}
-        self._at: NDArray[np.float64] | None = None
+        self._others = np.isnan(chain.q(np.zeros(chain.n), np.full(chain.model.nq, np.nan)))  # entries of other joints
+        self._at: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
         self._gone = np.zeros(chain.n)
 
     @property
@@ -125,12 +126,12 @@ class Stops:
 
     def _went_to(self, q: NDArray[np.float64]) -> None:
         """Add to the way that the coordinates have gone; forget distances if anything else has moved."""
-        chain = self.chain
-        if self._at is None or not np.array_equal(chain.q(chain.x(self._at), q), self._at):
+        x, others = self.chain.x(q), q[self._others]
+        if self._at is None or not np.array_equal(others, self._at[1]):
             self._known.clear()
         else:
-            self._gone = self._gone + np.abs(chain.limits.way(chain.x(self._at), chain.x(q)))
-        self._at = q.copy()
+            self._gone = self._gone + np.abs(self.chain.limits.way(self._at[0], x))
+        self._at = x, others
 
     def _measured(self, placed: Placed, i: int, j: int, k: int) -> Known:
         """The distance of a pair where it is placed now."""

@@ -48,6 +48,8 @@ class MotionLimits:
     def of(chain: Chain, velocity: Share = None, acceleration: Share = None, jerk: Share = None) -> MotionLimits:
         """Limits for a chain, each one number for all joints or (n,) one a joint.
 
+        Joints that mimic one of the chain's are bound by what that one may do, and not by limits of their own.
+
         Args:
             chain: The chain.
             velocity: rad/s or m/s; default: the model's.

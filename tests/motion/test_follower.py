@@ -139,7 +139,7 @@ def test_a_circle_through_the_wrists_singularity(ur5: mik.Chain, quarter: int, l
         angle = 0.5 * np.pi * (quarter + 0.5 * t * t if t < 1.0 else quarter + t - 0.5)  # it speeds up for a second
         return moved(top, 0.0, 0.1 * np.sin(angle), -0.1 - 0.1 * np.cos(angle))
 
-    begin = mik.solve_ik(ur5, circle(0.0), stretched + [0.0, 0.0, 0.0, 0.0, 0.3, 0.0])
+    begin = mik.solve_ik(ur5, circle(0.0), np.add(stretched, (0.0, 0.0, 0.0, 0.0, 0.3, 0.0)))
     assert begin
     watched = Watched(ur5, mik.MotionLimits.of(ur5), begin.q)
     steps = [watched.step(circle(i / RATE)) for i in range(2500)]
