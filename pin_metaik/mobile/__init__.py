@@ -41,10 +41,14 @@ from pin_metaik.mobile.paths.exact import shortest_path
 from pin_metaik.mobile.paths.fitness import FITNESSES, ExactFitness, Fitness, PaperFitness
 from pin_metaik.mobile.paths.homotopy import shortest_paths
 from pin_metaik.mobile.paths.path import Path
-from pin_metaik.mobile.paths.planning import plan_alternatives, plan_path
+from pin_metaik.mobile.paths.planning import plan_alternatives, plan_path, planner_of
 from pin_metaik.mobile.paths.problem import PathProblem
 from pin_metaik.mobile.paths.result import PathPlan, PathStatus
 from pin_metaik.mobile.paths.visibility import Visibility
+from pin_metaik.mobile.planners.grid import GridAStar
+from pin_metaik.mobile.planners.protocol import Found, LineTests, PathPlanner
+from pin_metaik.mobile.planners.registry import PLANNERS
+from pin_metaik.mobile.planners.sampling import RandomTree, Roadmap
 from pin_metaik.mobile.ros import nav_path, write_nav_path
 from pin_metaik.mobile.world.freespace import FreeSpace
 from pin_metaik.mobile.world.grids import OccupancyGrid, grid_of, read_grid
@@ -56,6 +60,7 @@ __all__ = [
     "FITNESSES",
     "NOMAD_200",
     "NOMAD_200_DRIVER",
+    "PLANNERS",
     "TURTLEBOT3_BURGER",
     "TURTLEBOT3_WAFFLE",
     "VEHICLES",
@@ -66,8 +71,11 @@ __all__ = [
     "ExactFitness",
     "Fitness",
     "Footprint",
+    "Found",
     "FreeSpace",
+    "GridAStar",
     "LearnedTurn",
+    "LineTests",
     "LooksLikeDegrees",
     "NoPath",
     "NoRoom",
@@ -76,8 +84,11 @@ __all__ = [
     "PaperFitness",
     "Path",
     "PathPlan",
+    "PathPlanner",
     "PathProblem",
     "PathStatus",
+    "RandomTree",
+    "Roadmap",
     "Route",
     "Samples",
     "Scene",
@@ -101,6 +112,7 @@ __all__ = [
     "plan_in_motion",
     "plan_path",
     "plan_trajectory",
+    "planner_of",
     "random_scene",
     "read_grid",
     "read_obstacles",
