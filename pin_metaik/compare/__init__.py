@@ -4,6 +4,7 @@ from pin_metaik.compare.case import Attempt, Case, Task
 from pin_metaik.compare.cases import CASES
 from pin_metaik.compare.method import Answer, Method
 from pin_metaik.compare.methods import METHODS, Search
+from pin_metaik.compare.planners.run import PlannerComparison, PlannerRun, compare_planners
 from pin_metaik.compare.replay import Replay, replay
 from pin_metaik.compare.report.comparison import write_report
 from pin_metaik.compare.results import Results, Summary, summarise
@@ -20,6 +21,8 @@ __all__ = [
     "Case",
     "Method",
     "Outcome",
+    "PlannerComparison",
+    "PlannerRun",
     "Replay",
     "Results",
     "Search",
@@ -28,6 +31,7 @@ __all__ = [
     "Task",
     "Trial",
     "compare",
+    "compare_planners",
     "read_results",
     "replay",
     "summarise",

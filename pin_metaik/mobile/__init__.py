@@ -18,14 +18,14 @@ from pin_metaik.mobile.curves.curve import Curve
 from pin_metaik.mobile.curves.footprint import Contact, Footprint, first_contact
 from pin_metaik.mobile.curves.shortest import shortest_curve
 from pin_metaik.mobile.curves.through import curve_through
-from pin_metaik.mobile.errors import Blocked, LooksLikeDegrees, NoPath, NoRoom, Obstructed
+from pin_metaik.mobile.errors import Blocked, LooksLikeDegrees, NoPath, NoRoom, NoTimedPath, Obstructed
 from pin_metaik.mobile.motion.fastest import fastest_trajectory
-from pin_metaik.mobile.motion.learned import LearnedTurn, learn_turn
+from pin_metaik.mobile.motion.learned import LearnedTurn, learn_turn, load_turn
 from pin_metaik.mobile.motion.replanning import plan_in_motion, replan
 from pin_metaik.mobile.motion.result import TrajectoryPlan
 from pin_metaik.mobile.motion.route import Route
 from pin_metaik.mobile.motion.timing import plan_trajectory
-from pin_metaik.mobile.motion.trajectory import Samples, State, Trajectory
+from pin_metaik.mobile.motion.trajectory import Samples, State, Trajectory, load_trajectory
 from pin_metaik.mobile.motion.vehicle import (
     NOMAD_200,
     NOMAD_200_DRIVER,
@@ -37,6 +37,9 @@ from pin_metaik.mobile.motion.vehicle import (
     Vehicle,
     load_vehicle,
 )
+from pin_metaik.mobile.moving.obstacle import MovingObstacle, load_moving
+from pin_metaik.mobile.moving.planning import plan_among_moving
+from pin_metaik.mobile.moving.timed import TimedPath
 from pin_metaik.mobile.paths.exact import shortest_path
 from pin_metaik.mobile.paths.fitness import FITNESSES, ExactFitness, Fitness, PaperFitness
 from pin_metaik.mobile.paths.homotopy import shortest_paths
@@ -77,8 +80,10 @@ __all__ = [
     "LearnedTurn",
     "LineTests",
     "LooksLikeDegrees",
+    "MovingObstacle",
     "NoPath",
     "NoRoom",
+    "NoTimedPath",
     "Obstructed",
     "OccupancyGrid",
     "PaperFitness",
@@ -94,6 +99,7 @@ __all__ = [
     "Scene",
     "State",
     "SynchroDrive",
+    "TimedPath",
     "Trajectory",
     "TrajectoryPlan",
     "Vehicle",
@@ -104,11 +110,15 @@ __all__ = [
     "first_contact",
     "grid_of",
     "learn_turn",
+    "load_moving",
     "load_scene",
+    "load_trajectory",
+    "load_turn",
     "load_vehicle",
     "mobile_robot",
     "nav_path",
     "plan_alternatives",
+    "plan_among_moving",
     "plan_in_motion",
     "plan_path",
     "plan_trajectory",

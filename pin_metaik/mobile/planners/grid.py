@@ -13,6 +13,7 @@ from pin_metaik.lookup import need
 from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.paths.problem import PathProblem
 from pin_metaik.mobile.planners.protocol import Found, LineTests
+from pin_metaik.mobile.world.cells import cell_middles
 from pin_metaik.optimize.settings import whole
 
 MOST = 2_000  # cells along a side: networkx takes a minute for a graph of a million
@@ -44,7 +45,7 @@ class GridAStar:
         need("A* on a grid", "planners", "networkx")
         import networkx as nx
 
-        middles = _middles(problem, self.cells)
+        middles = cell_middles(problem.space.box, self.cells)
         places = np.vstack((middles.reshape(-1, 2), problem.scene.start, problem.scene.goal))
         start, goal = len(places) - 2, len(places) - 1
         graph = nx.Graph()
@@ -59,16 +60,6 @@ class GridAStar:
         except nx.NetworkXNoPath:
             return Found(None)
         return Found(Path(places[nodes]))
-
-
-def _middles(problem: PathProblem, cells: int) -> Array:
-    """The middles (rows, columns, 2) of square cells that cover the workspace."""
-    x_min, y_min, x_max, y_max = problem.space.box
-    width = max(x_max - x_min, y_max - y_min) / cells
-    columns, rows = (max(1, round((high - low) / width)) for low, high in ((x_min, x_max), (y_min, y_max)))
-    x = x_min + (np.arange(columns) + 0.5) * (x_max - x_min) / columns
-    y = y_min + (np.arange(rows) + 0.5) * (y_max - y_min) / rows
-    return np.stack(np.meshgrid(x, y), axis=-1)
 
 
 def _neighbours(middles: Array, tests: LineTests) -> list[tuple[int, int, float]]:
