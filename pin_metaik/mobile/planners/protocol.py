@@ -92,7 +92,7 @@ class LineTests:
             self._check()
             tell(self._watch, Progress(self.count, self._budget.evaluations or 0, best))
         except KeyboardInterrupt as stop:
-            self.stopped = stop
+            self.stopped = stop.with_traceback(None)  # whose frames would keep everything of OMPL alive
             return True
         return self._over
 
