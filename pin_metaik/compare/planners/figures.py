@@ -13,6 +13,9 @@ if TYPE_CHECKING:  # shapely is an extra
     from pin_metaik.mobile import PathProblem
 
 
+ACROSS = 4  # panels of one scene side by side
+
+
 @dataclass(frozen=True, eq=False)
 class Overlaid:
     """The paths of a planner's runs on a scene.
@@ -27,7 +30,7 @@ class Overlaid:
 
 
 def overlay(canvas: Any, problems: Mapping[str, PathProblem], rows: Mapping[str, Mapping[str, Overlaid]]) -> None:
-    """All runs over one another, a row for each planner and a column for each scene.
+    """All runs over one another, a row for each planner and a column for each scene; one scene's planners in rows.
 
     Args:
         canvas: An empty ``matplotlib.figure.Figure``.
@@ -38,16 +41,25 @@ def overlay(canvas: Any, problems: Mapping[str, PathProblem], rows: Mapping[str,
     from pin_metaik.mobile.plots import draw_runs
 
     colours = colours_of(rows)
-    axes = canvas.subplots(len(rows), len(problems), squeeze=False)
-    for line, (method, by_scene) in zip(axes, rows.items(), strict=True):
-        for ax, (scene, problem) in zip(line, problems.items(), strict=True):
-            ran = by_scene[scene]
-            free, colliding = (
-                [Path(points) for points, well in zip(ran.points, ran.free, strict=True) if well is wanted]
-                for wanted in (True, False)
-            )
-            draw_runs(ax, problem.scene, free, problem.optimum, colours[method], colliding)
-            ax.set_title(f"{scene}, {method}: {len(free)} of {len(ran.points)} free", fontsize="medium")
+    down, across = shape_of(len(rows), len(problems))
+    axes = canvas.subplots(down, across, squeeze=False).ravel()
+    panels = [(method, scene) for method in rows for scene in problems]
+    for ax in axes[len(panels) :]:
+        ax.set_axis_off()
+    for ax, (method, scene) in zip(axes, panels, strict=False):
+        ran, problem = rows[method][scene], problems[scene]
+        free, colliding = (
+            [Path(points) for points, well in zip(ran.points, ran.free, strict=True) if well is wanted]
+            for wanted in (True, False)
+        )
+        draw_runs(ax, problem.scene, free, problem.optimum, colours[method], colliding)
+        ax.set_title(f"{scene}, {method}: {len(free)} of {len(ran.points)} free", fontsize="medium")
+
+
+def shape_of(methods: int, scenes: int) -> tuple[int, int]:
+    """Rows and columns of the panels of an overlay."""
+    across = scenes if scenes > 1 else min(methods, ACROSS)
+    return -(-methods * scenes // across), across
 
 
 def times(canvas: Any, panels: Mapping[str, Mapping[str, Sequence[float]]], log: bool = False) -> None:
@@ -72,4 +84,6 @@ def times(canvas: Any, panels: Mapping[str, Mapping[str, Sequence[float]]], log:
         ax.set(title=scene, xlabel="run", ylabel="processor time, ms")
         ax.set(**({"yscale": "log"} if log else {"ylim": (0, None)}))
         ax.grid(alpha=0.3)
-        ax.legend(frameon=False, fontsize="small")
+        ax.xaxis.get_major_locator().set_params(integer=True)
+    lines, labels = ax.get_legend_handles_labels()
+    canvas.legend(lines, labels, loc="outside lower center", ncols=min(len(labels), 5), frameon=False)

@@ -10,7 +10,7 @@ import numpy as np
 
 from pin_metaik.arrays import Array
 from pin_metaik.compare.papers import plots
-from pin_metaik.compare.planners.figures import Overlaid, overlay, times
+from pin_metaik.compare.planners.figures import Overlaid, overlay, shape_of, times
 from pin_metaik.compare.planners.run import PlannerComparison, PlannerRun
 from pin_metaik.compare.report import Column, Figure, Section, Table, Value
 
@@ -93,7 +93,8 @@ def figures(comparison: PlannerComparison) -> tuple[Figure, ...]:
 
     count = len(comparison.problems)
     wide = plots.size(*[1] * count)
-    tall = (max(wide[0], PANEL * count), PANEL * len(comparison.methods) + 0.4)
+    down, across = shape_of(len(comparison.methods), count)
+    tall = (PANEL * across, PANEL * down + 0.2)
     caption = "All runs over one another, dotted if they collide or found nothing; dashed: the shortest path."
     drawn = [Figure("planners_paths", caption, paths, tall)]
     if improving:
