@@ -15,8 +15,6 @@ from rich.console import Console
 from pin_metaik.cli.settings import values_of, with_values
 from pin_metaik.cli.versions import versions
 from pin_metaik.errors import InvalidSetting, UnknownName
-from pin_metaik.lookup import need
-from pin_metaik.output import writable
 
 if TYPE_CHECKING:  # shapely is an extra, and none of the other commands should wait for it
     from pin_metaik.mobile import Fitness, PathPlanner, Scene, State
@@ -25,7 +23,6 @@ if TYPE_CHECKING:  # shapely is an extra, and none of the other commands should 
 UNITS = {"length": "that of the scene, m with a trajectory", "angle": "rad", "time": "s"}
 RANDOM = "random:"
 GAP = 0.1  # what random scenes keep between obstacles on top of the robot
-PICTURES = (".png", ".svg", ".pdf")
 FITNESS = "fitness."
 
 Place: TypeAlias = tuple[float, float] | None
@@ -159,14 +156,6 @@ def state_of(numbers: tuple[float, ...]) -> State:
 
     x, y, heading, v, *turning = numbers
     return mobile.State(x, y, radians(heading), v, *(radians(rate) for rate in turning))
-
-
-def picture_file(path: Path) -> None:
-    """Look whether a picture can be drawn and written, before the work that it is for."""
-    need("drawing figures", "plots", "matplotlib")
-    if path.suffix.lower() not in PICTURES:
-        raise InvalidSetting(f"a picture is one of {', '.join(PICTURES)}, not {str(path)!r}")
-    writable(path)
 
 
 def print_report(report: Mapping[str, Any]) -> None:

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.console import Console
 
-from pin_metaik.cli.mobile.common import Json, Pose, picture_file, print_report, read_scene, say_written
+from pin_metaik.cli.mobile.common import Json, Pose, print_report, read_scene, say_written
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.output import writable
+from pin_metaik.pictures import picture_file
 
 if TYPE_CHECKING:
     from pin_metaik.mobile import Curve, Footprint

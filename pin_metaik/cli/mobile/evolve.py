@@ -10,7 +10,6 @@ from rich.console import Console
 
 from pin_metaik.cli.codes import INTERRUPTED
 from pin_metaik.cli.mobile.common import (
-    PICTURES,
     FitnessName,
     Goal,
     Rng,
@@ -24,9 +23,8 @@ from pin_metaik.cli.mobile.common import (
 )
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import kept
-from pin_metaik.lookup import need
 from pin_metaik.optimize import ALGORITHMS, Budget
-from pin_metaik.output import writable
+from pin_metaik.pictures import picture_file
 from pin_metaik.watching import Population, Progress
 
 FILM = ".gif"
@@ -56,10 +54,7 @@ def evolve(
     """
     from pin_metaik import mobile
 
-    need("drawing figures", "plots", "matplotlib")
-    if output.suffix.lower() not in (*PICTURES, FILM):
-        raise InvalidSetting(f"generations are drawn as {', '.join((*PICTURES, FILM))}, not {str(output)!r}")
-    writable(output)
+    picture_file(output, FILM)
     planner = planner_with(method, settings)
     if method not in ALGORITHMS:
         raise InvalidSetting(f"{method} has no generations: --method is one of {', '.join(ALGORITHMS)}")

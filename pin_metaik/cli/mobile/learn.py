@@ -88,8 +88,8 @@ def learn(
             f"squared error {training.mse:.3g} (scaled)"
         )
         console.print(
-            f"  on the paper's test set: mean error {errors.E0:.3g} % (E0), largest {errors.Em:.3g} % (Em), above 5 % at "
-            f"{errors.E5:,} of {errors.n:,} points (E5)",
+            f"  on the paper's test set: mean error {errors.E0:.3g} % (E0), largest {errors.Em:.3g} % (Em), above 5 % "
+            f"at {errors.E5:,} of {errors.n:,} points (E5)",
             soft_wrap=True,
         )
     say_written([output], as_json)

@@ -15,13 +15,13 @@ from pin_metaik.cli.mobile.common import (
     Json,
     SceneName,
     Start,
-    picture_file,
     print_report,
     read_scene,
     say_written,
 )
 from pin_metaik.cli.progress import progress_bar
 from pin_metaik.output import writable
+from pin_metaik.pictures import picture_file
 
 
 def moving(

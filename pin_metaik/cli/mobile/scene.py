@@ -20,12 +20,12 @@ from pin_metaik.cli.mobile.common import (
     Start,
     Threshold,
     Unknown,
-    picture_file,
     print_report,
     read_scene,
     say_written,
 )
 from pin_metaik.output import writable
+from pin_metaik.pictures import picture_file
 
 if TYPE_CHECKING:
     from pin_metaik.mobile import PathProblem

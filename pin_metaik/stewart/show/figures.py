@@ -6,14 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pin_metaik.arguments import checked, instance
-from pin_metaik.errors import InvalidSetting
 from pin_metaik.lookup import need
-from pin_metaik.output import writable
+from pin_metaik.pictures import picture_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FORMATS = (".png", ".svg", ".pdf")
 STEEL, PLATE, ROD = "#4a4f57", "#e07b1a", "#2f6fb0"
 
 
@@ -24,21 +22,6 @@ def need_plots() -> None:
         MissingExtra: matplotlib is not installed.
     """
     need("a picture", "plots", "matplotlib")
-
-
-@checked
-def picture_file(path: str | Path) -> Path:
-    """The path of a picture that can be written, before anything is worked out for it.
-
-    Raises:
-        MissingExtra: matplotlib is not installed.
-        InvalidSetting: Its ending is none of a picture.
-        CannotWrite: It cannot be written.
-    """
-    need_plots()
-    if Path(path).suffix.lower() not in FORMATS:
-        raise InvalidSetting(f"a picture ends in {', '.join(FORMATS)}, got {str(path)!r}")
-    return writable(path)
 
 
 @checked
