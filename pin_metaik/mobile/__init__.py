@@ -49,7 +49,7 @@ from pin_metaik.mobile.paths.problem import PathProblem
 from pin_metaik.mobile.paths.result import PathPlan, PathStatus
 from pin_metaik.mobile.paths.visibility import Visibility
 from pin_metaik.mobile.planners.grid import GridAStar
-from pin_metaik.mobile.planners.protocol import Found, LineTests, PathPlanner
+from pin_metaik.mobile.planners.protocol import Found, PathPlanner
 from pin_metaik.mobile.planners.registry import PLANNERS
 from pin_metaik.mobile.planners.sampling import RandomTree, Roadmap
 from pin_metaik.mobile.ros import nav_path, write_nav_path
@@ -78,7 +78,6 @@ __all__ = [
     "FreeSpace",
     "GridAStar",
     "LearnedTurn",
-    "LineTests",
     "LooksLikeDegrees",
     "MovingObstacle",
     "NoPath",

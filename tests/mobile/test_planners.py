@@ -9,6 +9,7 @@ from numpy.testing import assert_array_equal
 from pin_metaik import mobile
 from pin_metaik.errors import InvalidBudget, InvalidSetting, UnknownName
 from pin_metaik.interrupts import Interrupted
+from pin_metaik.mobile.planners.protocol import LineTests
 from pin_metaik.optimize import Budget
 from pin_metaik.watching import Progress
 
@@ -101,7 +102,7 @@ def test_start_and_goal_in_one_place_need_no_search() -> None:
 
 def test_planners_of_one_s_own_need_no_registration(problem: mobile.PathProblem) -> None:
     class Cheat:
-        def route(self, problem: mobile.PathProblem, tests: mobile.LineTests, rng: np.random.Generator) -> mobile.Found:
+        def route(self, problem: mobile.PathProblem, tests: LineTests, rng: np.random.Generator) -> mobile.Found:
             return mobile.Found(problem.optimum)
 
     plan = mobile.plan_path(problem, Cheat())

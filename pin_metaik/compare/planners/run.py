@@ -11,7 +11,7 @@ from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.optimize import Budget, Metaheuristic
 from pin_metaik.optimize.settings import few
-from pin_metaik.randomness import repeatable
+from pin_metaik.randomness import as_generator
 from pin_metaik.watching import Progress, Watch, ended, tell
 
 if TYPE_CHECKING:  # shapely is an extra
@@ -64,6 +64,7 @@ class PlannerComparison:
         """Whether it was interrupted."""
         return len(self.runs) < self.planned
 
+    @checked
     def of(self, scene: str, method: str) -> list[PlannerRun]:
         """The runs of a planner on a scene."""
         return [run for run in self.runs if (run.scene, run.method) == (scene, method)]
@@ -113,7 +114,7 @@ def compare_planners(
         Interrupted: Ctrl-C; its ``result`` has the runs that are done.
     """
     few("runs", runs)
-    repeatable(rng)
+    as_generator(rng)  # refuses what is no seed
     named = _named(problems)
     chosen = dict(methods) if isinstance(methods, Mapping) else {name: name for name in methods}
     if not chosen:
@@ -124,7 +125,7 @@ def compare_planners(
     def one(problem: PathProblem, name: str, seed: int, limit: Budget) -> PathPlan:
         from pin_metaik import mobile
 
-        asked = replace(problem) if chosen[name] == EXACT else problem  # without what was worked out before
+        asked = replace(problem) if _is_exact(chosen[name]) else problem  # without what was worked out before
         return mobile.plan_path(asked, chosen[name], fitness=fitness, via=via, budget=limit, rng=seed, trace=True)
 
     for problem in named.values():
@@ -168,4 +169,8 @@ def _without_chance(method: Planner) -> bool:
     """Whether a planner gives the same path whatever the seed."""
     from pin_metaik import mobile
 
-    return method == EXACT or isinstance(mobile.planner_of(method), mobile.GridAStar)
+    return _is_exact(method) or isinstance(mobile.planner_of(method), mobile.GridAStar)
+
+
+def _is_exact(method: Planner) -> bool:
+    return isinstance(method, str) and method == EXACT

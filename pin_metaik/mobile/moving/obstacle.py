@@ -52,6 +52,7 @@ class MovingObstacle:
         times = np.atleast_1d(array("t", t, "...")).ravel()
         return np.column_stack([np.interp(times, self.way[:, 0], self.way[:, i]) for i in (1, 2)])
 
+    @checked
     def planes(self, clearance: float) -> Array:
         """Half-planes (m, 3), unit normal and offset, of the outline grown by a clearance and by what is around it."""
         corners = self.footprint.corners
@@ -65,6 +66,7 @@ class MovingObstacle:
         reach = (normals @ corners.T).max(axis=1) + clearance + self.footprint.around
         return np.column_stack((normals, reach))
 
+    @checked
     def legs(self, number: int) -> Array:
         """Its legs (k + 1, 7) as the kernel takes them: number, begin, end, x, y at the beginning, velocity."""
         t, xy = self.way[:, 0], self.way[:, 1:]

@@ -40,6 +40,7 @@ class GridAStar:
         whole("cells", self.cells, 2)
         whole(f"{MOST} - cells", MOST - self.cells, 0)
 
+    @checked
     def route(self, problem: PathProblem, tests: LineTests, rng: np.random.Generator) -> Found:
         """The shortest way over the grid; None if the grid has none."""
         need("A* on a grid", "planners", "networkx")

@@ -54,6 +54,7 @@ class RandomTree:
             positive("range", self.range)
         within("goal_bias", self.goal_bias, 0, 1)
 
+    @checked
     def route(self, problem: PathProblem, tests: LineTests, rng: np.random.Generator) -> Found:
         """Grow the tree until it has a path, or until the budget is spent."""
         with _space(problem, tests, rng) as world:
@@ -99,6 +100,7 @@ class Roadmap:
     def __post_init__(self) -> None:
         whole("nearest", self.nearest, 1)
 
+    @checked
     def route(self, problem: PathProblem, tests: LineTests, rng: np.random.Generator) -> Found:
         """Grow the roadmap until the budget is spent, then search it."""
         need("the way over a roadmap", "planners", "networkx")
