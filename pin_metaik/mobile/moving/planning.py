@@ -31,12 +31,11 @@ from pin_metaik.mobile.world.cells import cell_middles
 from pin_metaik.mobile.world.scene import Scene
 from pin_metaik.notice import notice
 from pin_metaik.optimize.settings import positive, whole
-from pin_metaik.watching import Progress, Watch, tell
+from pin_metaik.watching import Progress, Stopped, Watch, tell
 
 LARGE = 1500  # places from which on looking for lines of sight takes seconds
 CELLS = 16
 MOST = 6000  # places; their lines of sight are 18 million
-TOLD = 50  # windows opened between two words to the watch
 
 State = tuple[int, int]  # a place, and the number of its window
 
@@ -66,7 +65,7 @@ def plan_among_moving(
         start_time: When it begins, s, by the obstacles' clock.
         cells: Square cells along the longer side of the workspace in whose middles it may turn and wait; 0 for none.
         places: More places (k, 2) to wait and to turn at, m; those that are not free are left out.
-        watch: Called now and then with the windows opened; True ends the search.
+        watch: Called for every window opened, with their number; True ends the search.
 
     Raises:
         Blocked: The robot cannot be at the start or the goal.
@@ -81,12 +80,14 @@ def plan_among_moving(
     positive("speed", speed)
     whole("cells", cells, 0)
     number("start_time", start_time)
-    points = _places(problem, cells, np.empty((0, 2)) if places is None else array("places", places, "k", 2))
-    lines = _lines_of_sight(problem, points)
     direct = problem.optimum.length / speed
+    points = _places(problem, cells, np.empty((0, 2)) if places is None else array("places", places, "k", 2))
     departures = Departures(moving, speed, problem.space.clearance)
-    search = _Search(problem, points, lines, departures, start_time, watch)
-    times, nodes = search.run()
+    search = _Search(problem, points, _lines_of_sight(problem, points), departures, start_time, watch)
+    try:
+        times, nodes = search.run()
+    except Stopped:
+        raise search.none("its watch ended the search") from None
     return TimedPath(times, points[nodes], speed, problem, tuple(moving), direct, search.opened, perf_counter() - began)
 
 
@@ -129,8 +130,7 @@ class _Search:
             self.opened += 1
             if state == goal:
                 return _traced(arrival, before, goal)
-            if self.opened % TOLD == 0:
-                tell(self.watch, Progress(self.opened, label="windows opened"))
+            tell(self.watch, Progress(self.opened, label="windows opened"))
             for following, departure, there in self._ways_on(state, arrival[state]):
                 if there < arrival.get(following, np.inf) and following not in settled:
                     arrival[following], before[following] = there, (state, departure)
