@@ -98,9 +98,9 @@ def drawn(seed: int) -> tuple[mobile.PathProblem, list[mobile.MovingObstacle], f
 def among_moving(count: int) -> Iterator[str]:
     yield "## Obstacles that move\n"
     yield (
-        "Random scenes of 8 obstacles with 4 to 8 more that drive about, radius 0.1; places to turn and wait are start, "
-        "goal, corners, and the middles of cells. Clearance by the exact distance of relative motions, and by 4,000 "
-        "samples. Arrival over the time of the shortest path if nothing moved.\n"
+        "Random scenes of 8 obstacles with 4 to 8 more that drive about, radius 0.1; places to turn and wait are "
+        "start, goal, corners and the middles of cells. Clearance by the exact distance of relative motions, and by "
+        "4,000 samples. Arrival over the time of the shortest path if nothing moved.\n"
     )
     rows: list[list[object]] = []
     for cells in (0, 8, 16, 32):
