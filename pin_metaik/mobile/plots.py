@@ -67,6 +67,13 @@ def draw_scene(ax: Any, scene: Scene, region: shapely.Geometry | None = None) ->
     ax.set(xlim=(x_min - room, x_max + room), ylim=(y_min - room, y_max + room), aspect="equal")
 
 
+def size_of(scene: Scene, width: float = 6.5, below: float = 1.2) -> tuple[float, float]:
+    """Width and height in inches that fit a scene, with room below for what is said there."""
+    x_min, y_min, x_max, y_max = _window(scene)
+    share = (y_max - y_min) / (x_max - x_min) if x_max > x_min else 2.0
+    return width, min(max(share * width, 2.0), 2 * width) + below
+
+
 def draw_plan(figure: Any, plan: PathPlan, others: Sequence[Path] = ()) -> None:
     """A planned path in its scene, thin lines for others; a path that collides is red and says so."""
     ax = figure.subplots()
@@ -182,7 +189,9 @@ def draw_timed(figure: Any, plan: TimedPath) -> None:
         ax.add_patch(_disc(place, space.clearance, colour))
         ax.plot(*place, "o", color=colour, markersize=4, zorder=6)
     for x, y, held in plan.waits:
-        ax.annotate(f"waits {held:.3g} s", (x, y), xytext=(6, 6), textcoords="offset points", fontsize="small")
+        label = {"xytext": (-8, 10), "textcoords": "offset points", "ha": "right", "fontsize": "small"}
+        box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0}
+        ax.annotate(f"waits {held:.3g} s", (x, y), bbox=box, zorder=7, **label)
     ax.set_title(
         f"{scene.name}: there after {plan.duration:.4g} s, {plan.direct:.4g} s if nothing moved"
         f"{'' if plan.success else ', collides'}",

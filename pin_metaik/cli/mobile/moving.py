@@ -71,7 +71,7 @@ def moving(
     elif output is not None:
         plan.write(output)
     if picture is not None:
-        plots.save(picture, lambda figure: plots.draw_timed(figure, plan), (6.5, 7.0))
+        plots.save(picture, lambda figure: plots.draw_timed(figure, plan), plots.size_of(world))
     if as_json:
         print_report({"timed_path": plan.as_dict()})
     else:
