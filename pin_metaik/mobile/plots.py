@@ -67,7 +67,7 @@ def draw_scene(ax: Any, scene: Scene, region: shapely.Geometry | None = None) ->
     ax.set(xlim=(x_min - room, x_max + room), ylim=(y_min - room, y_max + room), aspect="equal")
 
 
-def size_of(scene: Scene, width: float = 6.5, below: float = 1.2) -> tuple[float, float]:
+def size_of(scene: Scene, width: float = 6.5, below: float = 1.6) -> tuple[float, float]:
     """Width and height in inches that fit a scene, with room below for what is said there."""
     x_min, y_min, x_max, y_max = _window(scene)
     share = (y_max - y_min) / (x_max - x_min) if x_max > x_min else 2.0
@@ -189,7 +189,7 @@ def draw_timed(figure: Any, plan: TimedPath) -> None:
         ax.add_patch(_disc(place, space.clearance, colour))
         ax.plot(*place, "o", color=colour, markersize=4, zorder=6)
     for x, y, held in plan.waits:
-        label = {"xytext": (-8, 10), "textcoords": "offset points", "ha": "right", "fontsize": "small"}
+        label = {"xytext": (0, 20), "textcoords": "offset points", "ha": "center", "fontsize": "small"}
         box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0}
         ax.annotate(f"waits {held:.3g} s", (x, y), bbox=box, zorder=7, **label)
     ax.set_title(
