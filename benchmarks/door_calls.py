@@ -6,6 +6,7 @@ called, ``OWNERS`` makes its object. Everything is small: a good call takes mill
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
@@ -18,6 +19,7 @@ import pin_metaik as mik
 from pin_metaik import collision, compare, kinematics, learn, mobile, optimize, robots, stewart, timing
 from pin_metaik.ik import refine
 from pin_metaik.mobile.motion.trajectory import Phase
+from pin_metaik.mobile.paths.planners.protocol import LineTests
 
 Arguments = Mapping[str, Any]
 
@@ -233,6 +235,42 @@ def curve() -> mobile.Curve:
 
 
 @cache
+def mover() -> mobile.MovingObstacle:
+    return mobile.MovingObstacle(mobile.Footprint.disc(0.2), [(0.0, 1.0, 0.0), (5.0, 1.0, 4.0)])
+
+
+@cache
+def waiting() -> mobile.WaitingPath:
+    return mobile.plan_among_moving(planning(), [mover()], 1.0, cells=0)
+
+
+def tests() -> LineTests:
+    return LineTests(planning().space, FEW, None, lambda: None)
+
+
+def routing() -> dict[str, Any]:
+    return {"problem": planning(), "tests": tests(), "rng": rng()}
+
+
+def saved_network() -> Path:
+    learn.save_regressor(regressor(), "network.npz")
+    return Path("network.npz")
+
+
+def saved_turn() -> Path:
+    turn().save("turn.npz")
+    return Path("turn.npz")
+
+
+def saved_trajectory() -> Path:
+    return written("trajectory.json", json.dumps(motion().as_dict(), allow_nan=False))
+
+
+@cache
+def comparison() -> compare.PlannerComparison:
+    return compare.compare_planners(planning(), ["exact", "ga"], 1, via=2, budget=FEW)
+
+
 def turn() -> mobile.LearnedTurn:
     return mobile.learn_turn(mobile.NOMAD_200, hidden=(2,), iterations=3)
 
@@ -362,6 +400,12 @@ OWNERS: dict[str, Callable[[], Any]] = {
     "mobile.DifferentialDrive": lambda: mobile.TURTLEBOT3_BURGER,
     "mobile.Footprint": lambda: mobile.Footprint.rectangle(0.5, 0.3),
     "mobile.SynchroDrive": lambda: mobile.NOMAD_200,
+    "mobile.MovingObstacle": mover,
+    "mobile.WaitingPath": waiting,
+    "mobile.GridAStar": lambda: mobile.GridAStar(5),
+    "mobile.RandomTree": mobile.RandomTree,
+    "mobile.Roadmap": mobile.Roadmap,
+    "compare.PlannerComparison": comparison,
     "mobile.ExactFitness": mobile.ExactFitness,
     "mobile.PaperFitness": mobile.PaperFitness,
     "mobile.FreeSpace": lambda: planning().space,
@@ -1164,6 +1208,53 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "rng": 0,
         "watch": None,
     },
+    "mobile.LearnedTurn.save": lambda: {"file": "turn.npz"},
+    "mobile.load_turn": lambda: {"file": saved_turn()},
+    "mobile.load_trajectory": lambda: {"file": saved_trajectory()},
+    "mobile.Trajectory.exact": dict,
+    "mobile.MovingObstacle": lambda: {
+        "footprint": mobile.Footprint.disc(0.2),
+        "way": [(0.0, 1.0, 0.0), (5.0, 1.0, 4.0)],
+        "name": "cart",
+    },
+    "mobile.MovingObstacle.at": lambda: {"t": [0.0, 1.0]},
+    "mobile.MovingObstacle.planes": lambda: {"clearance": 0.1},
+    "mobile.MovingObstacle.legs": lambda: {"number": 0},
+    "mobile.MovingObstacle.as_dict": dict,
+    "mobile.load_moving": lambda: {"source": written("moving.json", json.dumps([mover().as_dict()]))},
+    "mobile.plan_among_moving": lambda: {
+        "problem": planning(),
+        "moving": [mover()],
+        "speed": 1.0,
+        "start_time": 0.0,
+        "cells": 2,
+        "places": [[0.0, 3.0]],
+        "watch": None,
+    },
+    "mobile.WaitingPath.at": lambda: {"t": [0.0, 1.0]},
+    "mobile.WaitingPath.write": lambda: {"file": "timed.csv"},
+    "mobile.WaitingPath.as_dict": dict,
+    "mobile.planner_of": lambda: {"method": "rrt"},
+    "mobile.GridAStar": lambda: {"cells": 5},
+    "mobile.GridAStar.route": routing,
+    "mobile.RandomTree": lambda: {"planner": "RRTstar", "range": 1.0, "goal_bias": 0.1},
+    "mobile.RandomTree.route": routing,
+    "mobile.Roadmap": lambda: {"nearest": 5},
+    "mobile.Roadmap.route": routing,
+    "compare.PlannerComparison.of": lambda: {"scene": "scene", "method": "ga"},
+    "compare.PlannerComparison.as_dict": dict,
+    "compare.compare_planners": lambda: {
+        "problems": planning(),
+        "methods": ["exact", "ga"],
+        "runs": 1,
+        "fitness": "exact",
+        "via": 2,
+        "budget": FEW,
+        "rng": 0,
+        "watch": None,
+    },
+    "learn.save_regressor": lambda: {"regressor": regressor(), "file": "network.npz"},
+    "learn.load_regressor": lambda: {"file": saved_network()},
     "mobile.load_scene": lambda: {
         "source": saved_grid(),
         "start": (0.1, 1.2),
@@ -1205,6 +1296,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "size": 10.0,
         "fill": 0.1,
         "gap": 0.1,
+        "concave": 0.5,
         "start": (0.5, 0.5),
         "goal": (9.5, 9.5),
     },

@@ -26,8 +26,12 @@ def need_plots() -> None:
 
 
 @checked
-def picture_file(path: str | Path) -> Path:
+def picture_file(path: str | Path, *others: str) -> Path:
     """The path of a picture that can be written, before anything is worked out for it.
+
+    Args:
+        path: Where to.
+        others: Endings that are welcome, too.
 
     Raises:
         MissingExtra: matplotlib is not installed.
@@ -35,8 +39,9 @@ def picture_file(path: str | Path) -> Path:
         CannotWrite: It cannot be written.
     """
     need_plots()
-    if Path(path).suffix.lower() not in FORMATS:
-        raise InvalidSetting(f"a picture ends in {', '.join(FORMATS)}, got {str(path)!r}")
+    endings = (*FORMATS, *others)
+    if Path(path).suffix.lower() not in endings:
+        raise InvalidSetting(f"a picture ends in {', '.join(endings)}, got {str(path)!r}")
     return writable(path)
 
 

@@ -5,11 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from threading import Lock
-from typing import TypeAlias, TypeVar
+from typing import NamedTuple, TypeAlias, TypeVar
 
+from pin_metaik.arrays import Array
 from pin_metaik.interrupts import Interrupted
 
 T = TypeVar("T")
+
+
+class Population(NamedTuple):
+    """The points that a search looked at in one generation; the arrays are the watch's own.
+
+    Attributes:
+        X: Points (k, n).
+        costs: Their costs (k,); inf where there is none.
+    """
+
+    X: Array
+    costs: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,13 +33,15 @@ class Progress:
         done: Steps done: evaluations, iterations, cells, targets or rows, as the function documents.
         total: Steps in all; 0 if unknown, as for a search with a budget in seconds.
         best: Cost of the best found so far, where the work has one.
-        label: The item being worked on.
+        label: What is being worked on now.
+        population: Of a metaheuristic, what its last generation looked at.
     """
 
     done: float
     total: float = 0
     best: float | None = None
     label: str = ""
+    population: Population | None = None
 
 
 Watch: TypeAlias = Callable[[Progress], bool | None]

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
-from typing import Any
+from typing import Any, TypeVar, cast
 
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.optimize import Metaheuristic, make
+
+T = TypeVar("T")
 
 KEPT = "agents"
 """The one setting that means the same to all: how many of them search."""
@@ -27,23 +29,34 @@ def configured(current: str | Metaheuristic, name: str | None, settings: Sequenc
     """
     before = make(current)
     chosen = before if name is None else make(name)
-    values = _values(chosen, settings)
+    values = values_of(chosen, settings)
     if name is not None and type(chosen) is not type(before) and hasattr(before, KEPT) and hasattr(chosen, KEPT):
         values = {KEPT: getattr(before, KEPT), **values}
-    if not is_dataclass(chosen) or isinstance(chosen, type):
+    return with_values(chosen, values)
+
+
+def with_values(chosen: T, values: Mapping[str, Any]) -> T:
+    """An object with other values of some of its settings, which are the fields of a dataclass."""
+    if not values or not is_dataclass(chosen) or isinstance(chosen, type):
         return chosen
-    return replace(chosen, **values) if name is None or values else chosen
+    return cast(T, replace(chosen, **values))
 
 
-def _values(algorithm: Metaheuristic, settings: Sequence[str]) -> dict[str, Any]:
-    known: list[str] = [field.name for field in fields(algorithm)] if is_dataclass(algorithm) else []
+def values_of(chosen: object, settings: Sequence[str]) -> dict[str, Any]:
+    """The values that ``key=value`` each give to settings of an object, which are the fields of a dataclass.
+
+    Raises:
+        UnknownName: No setting of it is so called.
+        InvalidSetting: Not ``key=value``.
+    """
+    known: list[str] = [field.name for field in fields(chosen)] if is_dataclass(chosen) else []
     values: dict[str, Any] = {}
     for setting in settings:
         key, sign, text = setting.partition("=")
         if not sign or not text:
             raise InvalidSetting(f"a setting is key=value, such as {KEPT}=60, got {setting!r}")
         if key.strip() not in known:
-            raise UnknownName(f"setting of {type(algorithm).__name__}", key.strip(), known)
+            raise UnknownName(f"setting of {type(chosen).__name__}", key.strip(), known)
         values[key.strip()] = _value(text.strip())
     return values
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 from math import degrees, radians, tau
+from pathlib import Path
 from typing import Annotated
 
 import numpy as np
@@ -17,7 +18,8 @@ from pin_metaik.cli.start import configuration, turns
 from pin_metaik.cli.versions import print_json
 from pin_metaik.collision import CollisionWorld, load_scene, scene_names
 from pin_metaik.errors import InvalidSetting, InvalidTarget
-from pin_metaik.ik import REFINERS, IKResult, IKSolver, Target, solve_ik
+from pin_metaik.figures import picture_file
+from pin_metaik.ik import REFINERS, IKResult, IKSolver, Target, save_arm, solve_ik
 from pin_metaik.ik.solver import EVALUATIONS
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.pose import rpy_matrix
@@ -35,6 +37,14 @@ def solve(
     robot: Annotated[str, typer.Argument(help="A robot's name (see `robots`), or the path of a .urdf or DH .toml.")],
     position: Annotated[
         tuple[float, float, float] | None, typer.Option(metavar="X Y Z", help="Target position in metres.")
+    ] = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="NAME=VALUE",
+            help="A parameter of a DH table, in its units, such as h=10; may be repeated.",
+        ),
     ] = None,
     rpy: Annotated[
         tuple[float, float, float] | None,
@@ -70,6 +80,9 @@ def solve(
         bool, typer.Option(help="In the world: check what a robot looks like, if it has no collision geometry.")
     ] = True,
     margin: Annotated[float | None, typer.Option(help="Distance to keep from everything in the world, m.")] = None,
+    picture: Annotated[
+        Path | None, typer.Option(help="Draw the arm at the solution, or at the nearest found: .png, .svg or .pdf.")
+    ] = None,
     rng: Annotated[int, typer.Option(min=0, help="Seed of every random choice.")] = 0,
     in_degrees: Annotated[bool, typer.Option("--degrees", help="Angles in degrees, given and shown.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
@@ -80,7 +93,9 @@ def solve(
     for option, value in (("--margin", margin), ("--srdf", srdf), ("--allow", allow), ("--no-visual", not visual)):
         if value and world is None:
             raise InvalidSetting(f"{option} is about a world: give --world, too, e.g. --world {ALONE}")
-    loaded = load_robot(robot)
+    if picture is not None:
+        picture_file(picture)
+    loaded = load_robot(robot, parameters=_parameters(settings or ()))
     chain = Chain(loaded.model, loaded.frame if frame is None else frame, locked=split(lock or ()))
     start = configuration(loaded.model, split(q0), chain.reference, in_degrees) if q0 else None
     solver = IKSolver(
@@ -94,12 +109,29 @@ def solve(
         warn("--rpy is in radians; for degrees give --degrees, too")
     _warm_up(chain, target, solver)
     result = solve_ik(chain, target, start, solver=solver, world=obstacles, rng=rng)
+    if picture is not None:
+        there = position if rpy is None or position is None else target.pose  # without a position: nowhere to draw
+        save_arm(picture, chain, result.q, there, obstacles)
     if as_json:
         units = {"length": "m", "angle": "deg" if in_degrees else "rad", "orientation_error": "rad", "time": "s"}
         print_json(report(loaded.name, chain, result, in_degrees), units)
     else:
         show(loaded.name, chain, result, in_degrees)
     raise typer.Exit(0 if result.success else 1)
+
+
+def _parameters(settings: Iterable[str]) -> dict[str, float]:
+    """Values by name, of ``NAME=VALUE`` each; the table knows which there are."""
+    values: dict[str, float] = {}
+    for setting in settings:
+        name, sign, text = setting.partition("=")
+        try:
+            values[name.strip()] = float(text)
+        except ValueError:
+            sign = ""
+        if not sign:
+            raise InvalidSetting(f"--set takes NAME=VALUE with a number, such as h=10, got {setting!r}")
+    return values
 
 
 def _world(
@@ -159,6 +191,8 @@ def show(robot: str, chain: Chain, result: IKResult, in_degrees: bool) -> None:
     for i, (name, value) in enumerate(zip(chain.names, _shown(chain, result.x, in_degrees), strict=True)):
         unit = "m" if not chain.limits.rotates[i] else "deg" if in_degrees else "rad"
         console.print(f"  {name:24} {value:12.6f} {unit}")
+    x, y, z = chain.placements(result.q)[0].translation
+    console.print(f"  {'reached':24} {x:.6f} {y:.6f} {z:.6f} m", markup=False)
     if not result.success:
         console.print(f"  {result.why}", soft_wrap=True)
 

@@ -4,6 +4,7 @@ from pin_metaik.compare.cases import CASES
 from pin_metaik.compare.cases.case import Attempt, Case, Task
 from pin_metaik.compare.methods import METHODS, Search
 from pin_metaik.compare.methods.method import Answer, Method
+from pin_metaik.compare.planners.run import PlannerComparison, PlannerRun, compare_planners
 from pin_metaik.compare.report.comparison import write_report
 from pin_metaik.compare.results.results import Results, Summary, read_results, summarise
 from pin_metaik.compare.running.replay import Replay, replay
@@ -19,6 +20,8 @@ __all__ = [
     "Case",
     "Method",
     "Outcome",
+    "PlannerComparison",
+    "PlannerRun",
     "Replay",
     "Results",
     "Search",
@@ -27,6 +30,7 @@ __all__ = [
     "Task",
     "Trial",
     "compare",
+    "compare_planners",
     "read_results",
     "replay",
     "summarise",

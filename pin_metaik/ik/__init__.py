@@ -4,6 +4,7 @@ from pin_metaik.ik import goals
 from pin_metaik.ik.batch import IKBatch, solve_ik_batch
 from pin_metaik.ik.goals.pose import Target
 from pin_metaik.ik.path import IKPath, solve_ik_path
+from pin_metaik.ik.picture import draw_arm, save_arm
 from pin_metaik.ik.problem import IKProblem, Verdict
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.refine import DLS, REFINERS, Refinement, Refiner
@@ -27,7 +28,9 @@ __all__ = [
     "Refiner",
     "Target",
     "Verdict",
+    "draw_arm",
     "goals",
+    "save_arm",
     "solve_ik",
     "solve_ik_all",
     "solve_ik_batch",

@@ -1,6 +1,7 @@
 """Fuzzy c-means, small dense networks and their trainers: no domain inside."""
 
 from pin_metaik.learn.fcm import Clusters, fuzzy_c_means, memberships
+from pin_metaik.learn.files import load_regressor, save_regressor
 from pin_metaik.learn.network import Network
 from pin_metaik.learn.regressor import OutsideTraining, Regressor, fit
 from pin_metaik.learn.trainers import TRAINERS, Trainer, Training, make_trainer, train
@@ -15,7 +16,9 @@ __all__ = [
     "Training",
     "fit",
     "fuzzy_c_means",
+    "load_regressor",
     "make_trainer",
     "memberships",
+    "save_regressor",
     "train",
 ]

@@ -18,14 +18,14 @@ from pin_metaik.mobile.curves.curve import Curve
 from pin_metaik.mobile.curves.footprint import Contact, Footprint, first_contact
 from pin_metaik.mobile.curves.shortest import shortest_curve
 from pin_metaik.mobile.curves.through import curve_through
-from pin_metaik.mobile.errors import Blocked, LooksLikeDegrees, NoPath, NoRoom, Obstructed
+from pin_metaik.mobile.errors import Blocked, LooksLikeDegrees, NoPath, NoRoom, NoTimedPath, Obstructed
 from pin_metaik.mobile.motion.fastest import fastest_trajectory
-from pin_metaik.mobile.motion.learned import LearnedTurn, learn_turn
+from pin_metaik.mobile.motion.learned import LearnedTurn, learn_turn, load_turn
 from pin_metaik.mobile.motion.replanning import plan_in_motion, replan
 from pin_metaik.mobile.motion.result import TrajectoryPlan
 from pin_metaik.mobile.motion.route import Route
 from pin_metaik.mobile.motion.timing import plan_trajectory
-from pin_metaik.mobile.motion.trajectory import Samples, State, Trajectory
+from pin_metaik.mobile.motion.trajectory import Samples, State, Trajectory, load_trajectory
 from pin_metaik.mobile.motion.vehicle import (
     NOMAD_200,
     NOMAD_200_DRIVER,
@@ -37,11 +37,18 @@ from pin_metaik.mobile.motion.vehicle import (
     Vehicle,
     load_vehicle,
 )
+from pin_metaik.mobile.moving.obstacle import MovingObstacle, load_moving
+from pin_metaik.mobile.moving.planning import plan_among_moving
+from pin_metaik.mobile.moving.waiting import WaitingPath
 from pin_metaik.mobile.paths.exact import shortest_path
 from pin_metaik.mobile.paths.fitness import FITNESSES, ExactFitness, Fitness, PaperFitness
 from pin_metaik.mobile.paths.homotopy import shortest_paths
 from pin_metaik.mobile.paths.path import Path
-from pin_metaik.mobile.paths.planning import plan_alternatives, plan_path
+from pin_metaik.mobile.paths.planners.grid import GridAStar
+from pin_metaik.mobile.paths.planners.protocol import Found, PathPlanner
+from pin_metaik.mobile.paths.planners.registry import PLANNERS
+from pin_metaik.mobile.paths.planners.sampling import RandomTree, Roadmap
+from pin_metaik.mobile.paths.planning import plan_alternatives, plan_path, planner_of
 from pin_metaik.mobile.paths.problem import PathProblem
 from pin_metaik.mobile.paths.result import PathPlan, PathStatus
 from pin_metaik.mobile.paths.visibility import Visibility
@@ -56,6 +63,7 @@ __all__ = [
     "FITNESSES",
     "NOMAD_200",
     "NOMAD_200_DRIVER",
+    "PLANNERS",
     "TURTLEBOT3_BURGER",
     "TURTLEBOT3_WAFFLE",
     "VEHICLES",
@@ -66,18 +74,25 @@ __all__ = [
     "ExactFitness",
     "Fitness",
     "Footprint",
+    "Found",
     "FreeSpace",
+    "GridAStar",
     "LearnedTurn",
     "LooksLikeDegrees",
+    "MovingObstacle",
     "NoPath",
     "NoRoom",
+    "NoTimedPath",
     "Obstructed",
     "OccupancyGrid",
     "PaperFitness",
     "Path",
     "PathPlan",
+    "PathPlanner",
     "PathProblem",
     "PathStatus",
+    "RandomTree",
+    "Roadmap",
     "Route",
     "Samples",
     "Scene",
@@ -87,20 +102,26 @@ __all__ = [
     "TrajectoryPlan",
     "Vehicle",
     "Visibility",
+    "WaitingPath",
     "configurations",
     "curve_through",
     "fastest_trajectory",
     "first_contact",
     "grid_of",
     "learn_turn",
+    "load_moving",
     "load_scene",
+    "load_trajectory",
+    "load_turn",
     "load_vehicle",
     "mobile_robot",
     "nav_path",
     "plan_alternatives",
+    "plan_among_moving",
     "plan_in_motion",
     "plan_path",
     "plan_trajectory",
+    "planner_of",
     "random_scene",
     "read_grid",
     "read_obstacles",

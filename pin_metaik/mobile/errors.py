@@ -78,6 +78,22 @@ class NoPath(MetaIKError):
         super().__init__(f"{where}: {why}{hint}")
 
 
+class NoTimedPath(NoPath):
+    """Among obstacles that move no motion of the form that was looked for leads to the goal.
+
+    Attributes:
+        why: What stands in the way.
+    """
+
+    def __init__(self, start: Point, goal: Point, clearance: float, why: str) -> None:
+        self.start, self.goal, self.clearance, self.nearly, self.join, self.why = start, goal, clearance, None, "", why
+        MetaIKError.__init__(
+            self,
+            f"no motion from {_shown(start)} to {_shown(goal)} that keeps a clearance of {clearance:g}: {why}; more "
+            "places (cells=...), another speed or another time to start may help",
+        )
+
+
 class NoRoom(MetaIKError):
     """A robot in motion for which nothing that was tried keeps clear of the obstacles.
 

@@ -17,7 +17,7 @@ from pin_metaik.optimize.budget import Budget
 from pin_metaik.optimize.search import Metaheuristic
 from pin_metaik.optimize.space import Box
 from pin_metaik.plain import fields_of
-from pin_metaik.watching import Progress, Watch, ended, tell
+from pin_metaik.watching import Population, Progress, Watch, ended, tell
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,8 +78,8 @@ def minimize(
             ``None`` is a fixed seed.
         seeds: Points to start from (s, n) or (n,), clipped to the box. An algorithm uses as many as it has agents.
         trace: Whether to record the best cost after every generation.
-        watch: Called after every generation with evaluations done and in all, and the best cost; True ends it as
-            interrupted.
+        watch: Called after every generation with evaluations done and in all, the best cost, and the points that the
+            generation looked at (``Progress.population``); True ends it as interrupted.
         keep: How many of the best points to return in `Result.elite`.
 
     Raises:
@@ -94,17 +94,31 @@ def minimize(
     history: list[tuple[float, float]] = []
     try:
         while search.status is None:
-            search.tell(objective(search.ask()))
+            X = search.ask()
+            costs = objective(X if watch is None else X.copy())
+            search.tell(costs)
             if trace:
                 history.append((search.run.evaluations, search.elite.costs[0]))
             if watch is not None:
-                tell(watch, Progress(search.run.evaluations, budget.evaluations or 0, float(search.elite.costs[0])))
+                tell(watch, _progress(search, budget, Population(X, _own(costs))))
     except KeyboardInterrupt as stop:
         if search.generations == 0:
             raise
         search.stop()
         return ended(stop, _result(search, history if trace else None))
     return _result(search, history if trace else None)
+
+
+def _progress(search: AskTell, budget: Budget, population: Population) -> Progress:
+    best = float(search.elite.costs[0])
+    return Progress(search.run.evaluations, budget.evaluations or 0, best, population=population)
+
+
+def _own(costs: ArrayLike) -> Array:
+    """Costs (k,) that are nobody else's, inf for NaN."""
+    own = np.array(costs, dtype=float)
+    own[np.isnan(own)] = np.inf
+    return own
 
 
 def _result(search: AskTell, history: list[tuple[float, float]] | None) -> Result:

@@ -80,7 +80,7 @@ def test_a_robot_of_ones_own_is_a_json_file(tmp_path):
     [
         (("nowhere",), "no scene named 'nowhere'"),
         (("random:x",), "random:SEED"),
-        (("ten_obstacles", "--method", "rrt"), "no path planner named 'rrt'"),
+        (("ten_obstacles", "--method", "rrx"), "no path planner named 'rrx'"),
         (("ten_obstacles", "--method", "ga", "--fitness", "eq5"), "no fitness named 'eq5'"),
         (("ten_obstacles", "--trajectory", "toppra"), "known: dp, de, ann"),
         (("ten_obstacles", "--start", "9", "3"), "nearest free place"),

@@ -116,8 +116,8 @@ def test_ctrl_c_goes_through_with_the_best_plan_so_far():
 
 def test_unknown_planners_and_too_few_via_points_are_refused():
     scene = load_scene("one_square")
-    with pytest.raises(UnknownName, match=r"no path planner named 'rrt'.*exact"):
-        plan_path(scene, "rrt")
+    with pytest.raises(UnknownName, match=r"no path planner named 'rrx'.*exact"):
+        plan_path(scene, "rrx")
     with pytest.raises(InvalidSetting, match="via"):
         plan_path(scene, "ga", via=0)
     with pytest.raises(InvalidSetting, match="radius"):

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 from pin_metaik.errors import InvalidBudget, InvalidSetting, UnknownName
 from pin_metaik.optimize import Box, Budget, Status, minimize
@@ -163,3 +164,21 @@ def test_the_elite_holds_the_best_points_in_order():
     assert np.array_equal(result.elite_costs, np.sort(sphere(X))[:12])
     assert np.array_equal(sphere(result.elite), result.elite_costs)
     assert np.array_equal(result.elite[0], result.x)
+
+
+def test_a_watch_is_handed_the_points_of_every_generation():
+    seen = []
+
+    def costs(X):
+        f = np.where(X[:, 0] < 0, np.nan, np.square(X).sum(axis=1))
+        X[:] = 7.0  # the array an objective gets is its own
+        return f
+
+    result = minimize(costs, BOX, "pso", Budget(400), watch=lambda at: seen.append(at.population))
+    assert sum(len(generation.X) for generation in seen) == 400
+    for X, f in seen:
+        assert BOX.holds(X)
+        assert_array_equal(f, np.where(X[:, 0] < 0, np.inf, np.square(X).sum(axis=1)))
+    assert min(f.min() for _, f in seen) == result.cost
+    silent = minimize(costs, BOX, "pso", Budget(400))
+    assert_array_equal(silent.x, result.x)

@@ -7,7 +7,6 @@ from functools import partial
 from statistics import median
 from typing import Any
 
-from pin_metaik.compare.papers import plots
 from pin_metaik.compare.papers.claims import claims_table
 from pin_metaik.compare.papers.paper import Job, Options, Paper
 from pin_metaik.compare.papers.path_planning_claims import claims, trials_of
@@ -24,12 +23,12 @@ from pin_metaik.compare.papers.path_planning_setup import (
     search,
     warm_up,
 )
-from pin_metaik.compare.report import Column, Figure, Section, Table, Value
+from pin_metaik.compare.planners.figures import Overlaid, overlay, times
+from pin_metaik.compare.report import Column, Figure, Section, Table, Value, plots
 
 C_P = 120.0  # all scenes are 10 x 10
 FITNESSES = ("paper", "exact")
 METHODS = ("GA", "PSO")
-COLOURS = dict(zip(METHODS, plots.COLOURS, strict=False))
 TRAP_RUNS = 10
 
 
@@ -183,39 +182,34 @@ def figures(trials: Sequence[PathTrial]) -> tuple[Figure, ...]:
         }
         plots.convergence(canvas, panels, "best fitness so far", 1e-3)
 
-    def times(canvas: Any) -> None:
-        for ax, scene in zip(canvas.subplots(1, len(scenes), squeeze=False)[0], scenes, strict=True):
-            for method in METHODS:
-                runs = trials_of(trials, scene, method, "paper")
-                seconds = [1e3 * t.seconds for t in runs]
-                ax.plot([t.run + 1 for t in runs], seconds, ".-", color=COLOURS[method], linewidth=0.8, label=method)
-            ax.set(title=scene, xlabel="run", ylabel="processor time, ms", ylim=(0, None))
-            ax.grid(alpha=0.3)
-            ax.legend(frameon=False)
+    def duration(canvas: Any) -> None:
+        times(
+            canvas,
+            {
+                scene: {method: [t.seconds for t in trials_of(trials, scene, method, "paper")] for method in METHODS}
+                for scene in scenes
+            },
+        )
 
-    def overlay(canvas: Any) -> None:
-        from pin_metaik.mobile import Path
-        from pin_metaik.mobile.plots import draw_runs
-
-        axes = canvas.subplots(len(METHODS), len(scenes), squeeze=False)
-        for row, method in zip(axes, METHODS, strict=True):
-            for ax, scene in zip(row, scenes, strict=True):
-                runs = trials_of(trials, scene, method, "paper")
-                world = problem(SETTINGS[scene])
-                free, colliding = ([Path(t.points) for t in runs if t.free is well] for well in (True, False))
-                draw_runs(ax, world.scene, free, world.optimum, COLOURS[method], colliding)
-                ax.set_title(f"{scene}, {method}: {sum(t.free for t in runs)} of {len(runs)} free", fontsize="medium")
+    def paths(canvas: Any) -> None:
+        worlds = {scene: problem(SETTINGS[scene]) for scene in scenes}
+        runs = {method: {scene: trials_of(trials, scene, method, "paper") for scene in scenes} for method in METHODS}
+        rows = {
+            method: {scene: Overlaid([t.points for t in ran], [t.free for t in ran]) for scene, ran in by.items()}
+            for method, by in runs.items()
+        }
+        overlay(canvas, worlds, rows)
 
     wide = plots.size(*[1] * len(scenes))
     return (
         Figure(
             "path_planning_paths",
             "All runs over one another, dotted if they collide; dashed: the shortest path.",
-            overlay,
+            paths,
             (wide[0], 7.6),
         ),
         Figure("path_planning_convergence", "Best fitness so far: medians thick, runs thin.", convergence, wide),
-        Figure("path_planning_times", "Processor time of every run.", times, wide),
+        Figure("path_planning_times", "Processor time of every run.", duration, wide),
     )
 
 

@@ -19,7 +19,6 @@ from pin_metaik.compare.papers.arm_report import (
     summary,
 )
 from pin_metaik.compare.papers.paper import Job, Options, Paper
-from pin_metaik.compare.papers.plots import Runs
 from pin_metaik.compare.papers.rv7fl_setup import (
     EQUAL,
     LONG,
@@ -33,6 +32,7 @@ from pin_metaik.compare.papers.rv7fl_setup import (
     cases,
 )
 from pin_metaik.compare.report import Column, Section, Table
+from pin_metaik.compare.report.plots import Runs
 
 ROUNDING = 1e-9  # mm; smaller differences do not count
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -15,9 +16,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
-from pin_metaik.errors import InvalidSetting
+from pin_metaik.errors import InvalidSetting, MetaIKError
 from pin_metaik.interrupts import wrapped
 from pin_metaik.learn import OutsideTraining, Regressor, Trainer, fit
+from pin_metaik.learn.files import arrays_of, network_file, numbers, read_arrays, regressor_of, save_arrays
 from pin_metaik.lookup import lookup
 from pin_metaik.mobile.motion.turn import lead_time
 from pin_metaik.mobile.motion.turn_data import coarse_grid, judging_points
@@ -148,6 +150,19 @@ class LearnedTurn:
         true = points[:, 0] * lead_time(points[:, 1], self.vehicle)
         return turn_errors(self._predict(points[:, 0], points[:, 1]), true)
 
+    @checked
+    def save(self, file: str | Path) -> None:
+        """Write the network, the robot and its training range: ``.npz``; ``load_turn`` reads it.
+
+        Raises:
+            InvalidSetting: Another suffix.
+            CannotWrite: The file cannot be written.
+        """
+        robot = self.vehicle
+        limits = (robot.v_max, robot.a_max, robot.omega_max, robot.alpha_max, robot.radius)
+        own = {"robot": robot.name, "limits": limits, "design": self.design, "range": (*self.angles, *self.speeds)}
+        save_arrays(network_file(file), {**arrays_of(self.regressor), **own})
+
     def _predict(self, v: Array, theta: Array) -> Array:
         design = DESIGNS[self.design]
         v = np.maximum(v, self.speeds[0] / 100)  # the logarithm of nearly nothing
@@ -242,3 +257,24 @@ def learn_turn(
         lambda: fit(use.inputs(v, theta), use.output(alpha), hidden, trainer, iterations, rng, watch),
         lambda regressor: LearnedTurn(vehicle, design, regressor, angles, speeds),
     )
+
+
+@checked
+def load_turn(file: str | Path) -> LearnedTurn:
+    """A network that ``LearnedTurn.save`` wrote, with the robot that it was learned for.
+
+    Raises:
+        InvalidSetting: The file is missing, or is none of these.
+    """
+    arrays = read_arrays(Path(file))
+    if missing := [key for key in ("robot", "limits", "design", "range") if key not in arrays]:
+        raise InvalidSetting(f"{file} is not a saved turn: it has no {', '.join(missing)}")
+    regressor = regressor_of(arrays, str(file))
+    try:
+        design = str(arrays["design"])
+        lookup("design", design, DESIGNS)
+        vehicle = SynchroDrive(str(arrays["robot"]), *numbers(arrays["limits"], 5).tolist())
+        least_angle, most_angle, least_speed, most_speed = numbers(arrays["range"], 4).tolist()
+    except (MetaIKError, ValueError, TypeError) as error:
+        raise InvalidSetting(f"{file} is not a saved turn: {error}") from None
+    return LearnedTurn(vehicle, design, regressor, (least_angle, most_angle), (least_speed, most_speed))  # type: ignore[arg-type]

@@ -153,6 +153,7 @@ class TrajectoryPlan:
             "vehicle": {name: getattr(vehicle, name) for name in vehicle.__dataclass_fields__},
             "seed": self.seed,
             "notes": self.notes,
+            **self.trajectory.exact(),
             "samples": self.trajectory.as_dict(dt),
         }
 

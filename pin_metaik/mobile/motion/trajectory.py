@@ -6,7 +6,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path as File
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.files import read_json
 from pin_metaik.mobile.motion.turn import clothoid
 from pin_metaik.optimize.settings import MANY, within
 from pin_metaik.output import writable, write_table
@@ -220,11 +221,33 @@ class Trajectory:
         """Write the samples as JSON: an object with one array for each column."""
         writable(file).write_text(json.dumps(self.as_dict(dt), allow_nan=False), encoding="utf-8")
 
+    def exact(self) -> dict[str, Any]:
+        """The whole motion as plain values: pose (x, y, heading) and speed at the start, and the phases."""
+        return {"start": list(self.start), "v": self.v, "phases": [list(phase) for phase in self.phases]}
+
     @checked
     def as_dict(self, dt: float = SAMPLES) -> dict[str, list[float]]:
         """The samples as plain lists, by name."""
         samples = self.sample(dt)
         return {field.name: getattr(samples, field.name).tolist() for field in fields(samples)}
+
+
+@checked
+def load_trajectory(file: str | File) -> Trajectory:
+    """The exact motion in a JSON file that ``plan --out`` wrote, or anybody from ``TrajectoryPlan.as_dict()``.
+
+    Raises:
+        InvalidSetting: The file is missing, or has no start, v and phases that make a motion.
+    """
+    given = read_json(File(file), InvalidSetting)
+    if not isinstance(given, dict) or any(key not in given for key in ("start", "v", "phases")):
+        raise InvalidSetting(f"{file} is not a trajectory: expected an object with start, v and phases")
+    try:
+        start = array("start", given["start"], 3).tolist()
+        phases = array("phases", given["phases"] or np.empty((0, 4)), "p", 4)
+        return Trajectory([Phase(*row) for row in phases.tolist()], (start[0], start[1], start[2]), given["v"])
+    except InvalidSetting as error:
+        raise InvalidSetting(f"{file} is not a trajectory: {error}") from None
 
 
 def _moved(states: Array, phases: Array, t: ArrayLike) -> tuple[Array, Array, Array, Array]:

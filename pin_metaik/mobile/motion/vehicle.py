@@ -149,9 +149,11 @@ def _limits(vehicle: Vehicle, names: tuple[str, ...]) -> None:
 NOMAD_200 = SynchroDrive("nomad200", 40 * INCH, 30 * INCH, math.radians(45), math.radians(50), 0.23)
 NOMAD_200_DRIVER = SynchroDrive("nomad200_driver", 20 * INCH, 30 * INCH, math.radians(45), math.radians(30), 0.23)
 
-# ROBOTIS' data sheets: 0.22 and 0.26 m/s, wheels of 33 mm radius 160 and 287 mm apart. The sheets' 2.84 and 1.82 rad/s
-# are these wheels turning on the spot at full speed (2.75 and 1.81), so that both at once would ask for twice as much.
-# The sheets give no acceleration: 1 m/s^2 is that of ROBOTIS' Gazebo models; radii are of its navigation settings.
+# ROBOTIS' data sheets: 0.22 and 0.26 m/s. Wheels of 33 mm radius 160 and 287 mm apart: burger.yaml and waffle.yaml in
+# turtlebot3_bringup/param of github.com/ROBOTIS-GIT/turtlebot3. The sheets' 2.84 and 1.82 rad/s are these wheels on the
+# spot at full speed (2.75 and 1.81), so that both at once would ask for twice as much. The sheets give no acceleration:
+# 1 m/s^2 is max_linear_acceleration of ROBOTIS' Gazebo models (turtlebot3_simulations); radii are robot_radius of its
+# settings of nav2 (turtlebot3_navigation2/param).
 TURTLEBOT3_BURGER = DifferentialDrive("turtlebot3_burger", 0.160, 0.22, 1.0, 0.105)
 TURTLEBOT3_WAFFLE = DifferentialDrive("turtlebot3_waffle", 0.287, 0.26, 1.0, 0.22)
 

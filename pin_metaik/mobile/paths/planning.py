@@ -1,7 +1,11 @@
-"""Planning a path: exactly, or by a metaheuristic over via points; either way the exact test has the last word."""
+"""Planning a path: exactly, by a metaheuristic over via points, or by what others made.
+
+However it is planned, the exact test has the last word.
+"""
 
 from __future__ import annotations
 
+import math
 from time import perf_counter
 
 import numpy as np
@@ -9,10 +13,12 @@ import numpy as np
 from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting, UnknownName
-from pin_metaik.interrupts import wrapped
+from pin_metaik.interrupts import Pressed, wrapped
 from pin_metaik.mobile.errors import NoPath
 from pin_metaik.mobile.paths.fitness import Fitness, make_fitness
 from pin_metaik.mobile.paths.path import Path
+from pin_metaik.mobile.paths.planners.protocol import Found, LineTests, PathPlanner
+from pin_metaik.mobile.paths.planners.registry import PLANNERS
 from pin_metaik.mobile.paths.problem import PathProblem
 from pin_metaik.mobile.paths.result import PathPlan, PathStatus
 from pin_metaik.mobile.world.scene import Scene
@@ -20,8 +26,8 @@ from pin_metaik.optimize import ALGORITHMS, Budget, Metaheuristic, Result, Statu
 from pin_metaik.optimize.ga import GA
 from pin_metaik.optimize.pso import PSO
 from pin_metaik.optimize.settings import whole
-from pin_metaik.randomness import repeatable
-from pin_metaik.watching import Watch
+from pin_metaik.randomness import as_generator, repeatable
+from pin_metaik.watching import Watch, ended
 
 EXACT = "exact"
 
@@ -37,7 +43,7 @@ PAPER_VIA = 5
 @checked
 def plan_path(
     problem: PathProblem | Scene,
-    method: str | Metaheuristic = EXACT,
+    method: str | Metaheuristic | PathPlanner = EXACT,
     *,
     fitness: str | Fitness = "exact",
     via: int = PAPER_VIA,
@@ -53,24 +59,29 @@ def plan_path(
         problem: A problem, or a scene for a point robot.
         method: ``"exact"``, the shortest path by the visibility graph (with a clearance: among the grown obstacles); or
             a metaheuristic over via points, by name (``"ga"`` and ``"pso"`` with the settings of the paper's Table 2)
-            or as an object.
+            or as an object; or one of ``PLANNERS`` for comparison: ``"astar"`` on a grid, ``"rrt"``, ``"rrtconnect"``,
+            ``"rrtstar"``, ``"informed"`` and ``"prm"`` by OMPL, or an object with a method ``route``.
         fitness: What metaheuristics minimise: ``"exact"``, ``"paper"`` or an object.
         via: Via points. With fewer than the shortest path has corners it is out of reach.
-        budget: Budget of a metaheuristic; an evaluation is one path.
+        budget: What a search may spend; an evaluation is one path of a metaheuristic, or one straight line that another
+            planner tests. Those that end with their first path, and A*, may need less or more.
         rng: Seed or generator; ``None`` is a fixed seed.
         seeded: Whether to start one individual at the shortest path: for a fitness that is not its length, or to see
             that the search can only be better than that.
         trace: Whether to keep the convergence.
-        watch: Called after every generation of the search with evaluations done and in all; True ends it.
+        watch: Called after every generation of the search with evaluations done and in all, and the paths of the
+            generation: ``problem.through(x)`` for each x of ``Progress.population.X``; True ends it.
 
     Returns:
-        The plan: check ``plan.success``. A metaheuristic's best may go through an obstacle.
+        The plan: check ``plan.success``. A metaheuristic's best may go through an obstacle; samples may find nothing.
 
     Raises:
         Blocked: The robot cannot be at the start or the goal.
         NoPath: There is no way, for the exact planner and ``seeded``.
         UnknownName: No planner or fitness of that name.
         InvalidSetting: Fewer than one via point, or too few for the seed.
+        InvalidBudget: A budget that would never end, or a target where no cost is minimised.
+        MissingExtra: A planner's package is not installed.
         Interrupted: Ctrl-C, after the first generation; its ``result`` is the plan with the best path so far.
     """
     if isinstance(problem, Scene):
@@ -81,27 +92,70 @@ def plan_path(
         path = problem.optimum
         return _exact(path, problem, _rank(path, problem), perf_counter() - began, seed)
     whole("via", via, 1)
-    algorithm = _algorithm(method)
+    name = method if isinstance(method, str) else type(method).__name__
+    algorithm = planner_of(method)
+    if isinstance(algorithm, PathPlanner):
+        return _routed(problem, algorithm, name, budget, rng, trace, watch)
     objective = make_fitness(fitness).on(problem.space, problem.scene.start, problem.scene.goal)
     seeds = _seed(problem, via) if seeded else None
-    box, name = problem.box(via), method if isinstance(method, str) else type(method).__name__
+    box = problem.box(via)
     return wrapped(
         lambda: minimize(objective, box, algorithm, budget, rng, seeds=seeds, trace=trace, watch=watch),
         lambda found: _searched(problem, found, name, seed),
     )
 
 
+def _routed(
+    problem: PathProblem,
+    planner: PathPlanner,
+    name: str,
+    budget: Budget,
+    rng: int | np.random.Generator | None,
+    trace: bool,
+    watch: Watch | None,
+) -> PathPlan:
+    """The plan of a planner that is no metaheuristic; Ctrl-C is noted, and heard between two of its steps."""
+    start, goal = problem.scene.start, problem.scene.goal
+    with Pressed(held=True) as pressed:
+        tests = LineTests(problem.space, budget, watch, pressed.check)
+        direct = Path(np.array([start, goal]))
+        found = Found(direct) if start == goal else planner.route(problem, tests, as_generator(rng))
+    path, seconds = found.path or direct, tests.seconds
+    status = PathStatus.NOT_FOUND
+    if found.path is not None:
+        status = PathStatus.FREE if problem.space.holds(path.points) else PathStatus.COLLIDES
+    cost = math.inf if found.path is None else path.length
+    plan = PathPlan(
+        path,
+        status,
+        _optimum(problem),
+        cost,
+        name,
+        tests.count,
+        seconds,
+        repeatable(rng),
+        tests.stopped is not None,
+        problem,
+        found.trace if trace else None,
+    )
+    return plan if tests.stopped is None else ended(tests.stopped, plan)
+
+
+def _optimum(problem: PathProblem) -> float | None:
+    """Length of the shortest path, if there is a way."""
+    try:
+        return problem.optimum.length
+    except NoPath:
+        return None
+
+
 def _searched(problem: PathProblem, found: Result, method: str, seed: int | None) -> PathPlan:
     """The plan that a search ends with."""
     path = problem.through(found.x)
-    try:
-        optimum: float | None = problem.optimum.length
-    except NoPath:
-        optimum = None
     return PathPlan(
         path,
         PathStatus.FREE if problem.space.holds(path.points) else PathStatus.COLLIDES,
-        optimum,
+        _optimum(problem),
         found.cost,
         method,
         found.evaluations,
@@ -147,12 +201,24 @@ def _rank(path: Path, problem: PathProblem) -> PathStatus:
     return PathStatus.OPTIMAL if exact else PathStatus.SHORTEST
 
 
-def _algorithm(method: str | Metaheuristic) -> Metaheuristic:
+@checked
+def planner_of(method: str | Metaheuristic | PathPlanner) -> Metaheuristic | PathPlanner:
+    """What a name stands for: a metaheuristic, ``ga`` and ``pso`` with the paper's settings, or another planner.
+
+    Raises:
+        UnknownName: Nothing of that name; ``exact`` has no settings, and is not among them.
+        InvalidSetting: An object that is neither.
+    """
     if isinstance(method, str):
+        if method in PAPER_SETTINGS:
+            return PAPER_SETTINGS[method]
+        if method in PLANNERS:
+            return PLANNERS[method]()
         if method not in ALGORITHMS:
-            raise UnknownName("path planner", method, [EXACT, *ALGORITHMS])
-        return PAPER_SETTINGS[method] if method in PAPER_SETTINGS else make(method)
-    return make(method)
+            raise UnknownName("path planner", method, [EXACT, *ALGORITHMS, *PLANNERS])
+    elif isinstance(method, PathPlanner) and not isinstance(method, type):
+        return method
+    return make(method)  # type: ignore[arg-type]  # it refuses what is no metaheuristic
 
 
 def _seed(problem: PathProblem, via: int) -> Array:

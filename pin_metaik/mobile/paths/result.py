@@ -14,7 +14,7 @@ from pin_metaik.mobile.paths.problem import PathProblem
 
 
 class PathStatus(StrEnum):
-    """Why a search for a path ended; all but the last are successes."""
+    """Why a search for a path ended; all but the last two are successes."""
 
     OPTIMAL = "OPTIMAL"
     """The shortest path of all, free of collisions."""
@@ -26,6 +26,8 @@ class PathStatus(StrEnum):
     """Free of collisions; how far from the shortest is its gap."""
     COLLIDES = "COLLIDES"
     """The best that was found goes through an obstacle."""
+    NOT_FOUND = "NOT_FOUND"
+    """Nothing was found that leads to the goal; the path is a straight line there, for want of one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,10 +37,10 @@ class PathPlan:
     Attributes:
         path: From start to goal.
         status: Whether it is the shortest, free, or not a path at all.
-        optimum: Length of the shortest path among the grown obstacles; None if there is no way.
-        cost: The fitness at the path; the exact planner's is its length.
+        optimum: Length of the shortest path among the obstacles as they are grown; None if there is no way.
+        cost: The fitness at the path; without a metaheuristic its length, inf if none was found.
         method: Name of the planner.
-        evaluations: Paths whose fitness was computed; 0 for the exact planner.
+        evaluations: Paths whose fitness was computed, or straight lines tested; 0 for the exact planner.
         seconds: Time taken, in s: of a search without the optimum that the gap is measured by; of the exact planner
             without the work done earlier for the problem.
         seed: Of every random choice; None if a generator was handed in.
@@ -67,7 +69,7 @@ class PathPlan:
     @property
     def collision_free(self) -> bool:
         """Whether the path keeps its clearance, by the exact test."""
-        return self.status is not PathStatus.COLLIDES
+        return self.status not in (PathStatus.COLLIDES, PathStatus.NOT_FOUND)
 
     @property
     def success(self) -> bool:
@@ -106,7 +108,7 @@ class PathPlan:
             "length": self.length,
             "optimum": self.optimum,
             "gap": self.gap,
-            "cost": self.cost,
+            "cost": self.cost if np.isfinite(self.cost) else None,
             "clearance": clearance if np.isfinite(clearance) else None,
             "evaluations": self.evaluations,
             "seconds": self.seconds,
@@ -125,4 +127,6 @@ class PathPlan:
             said.append(f"{self.problem.space.join} joins")
         if self.gap is not None and self.status is PathStatus.FREE:
             far = f", {100 * self.gap:.2f} % above the optimum"
+        if self.status is PathStatus.NOT_FOUND:
+            return f"{self.status}: no path ({', '.join(said)}, {1e3 * self.seconds:.0f} ms)"
         return f"{self.status}: length {self.length:.6g}{far} ({', '.join(said)}, {1e3 * self.seconds:.0f} ms)"

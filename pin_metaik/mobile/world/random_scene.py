@@ -1,4 +1,4 @@
-"""Random scenes: convex obstacles that keep a gap, so that there always is a path; the same seed, the same scene."""
+"""Random scenes: obstacles that keep a gap, so that there always is a path; the same seed, the same scene."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ import shapely
 from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.world.scene import Point, Scene
+from pin_metaik.optimize.settings import within
 from pin_metaik.randomness import as_generator
 
 MOST = 10_000  # obstacles; the time they take grows with the square of their number
 ATTEMPTS = 2000  # places tried for one obstacle
+NEAREST, BITTEN = 0.35, 0.9  # of the radius, how near corners of stars may be; of the hull's area, how much a star has
 
 
 @checked
@@ -24,10 +26,11 @@ def random_scene(
     size: float = 10.0,
     fill: float = 0.3,
     gap: float = 0.1,
+    concave: float = 0.0,
     start: Point | None = None,
     goal: Point | None = None,
 ) -> Scene:
-    """A square workspace with convex polygons of 3 to 8 corners.
+    """A square workspace with convex polygons of 3 to 8 corners, and if asked for with concave ones of 5 to 9.
 
     Args:
         obstacles: How many.
@@ -35,13 +38,16 @@ def random_scene(
         size: Width of the workspace, in m.
         fill: Share of the workspace that the circles around the obstacles cover.
         gap: Least distance between obstacles, and from them to start and goal, in m. Twice a robot's clearance lets it
-            through everywhere, if obstacles grow with round joins: mitred corners stick out further.
+            through everywhere, if obstacles grow with round joins: mitred corners stick out further. A start or goal
+            in the pocket of a concave obstacle may be shut in all the same.
+        concave: Share of the obstacles, by chance, that are concave: stars with 5 to 9 corners.
         start: (x, y); default: near the lower left corner.
         goal: (x, y); default: near the upper right corner.
 
     Raises:
         InvalidSetting: The obstacles do not fit.
     """
+    within("concave", concave, 0, 1)
     if not (0 <= obstacles <= MOST and 0 < size < math.inf and 0 < fill < 1 and gap >= 0):
         raise InvalidSetting(
             f"a random scene takes 0 to {MOST:,} obstacles, size > 0, 0 < fill < 1 and gap >= 0, got "
@@ -56,7 +62,9 @@ def random_scene(
     for i in range(obstacles):
         for _ in range(ATTEMPTS):
             radius = usual * generator.uniform(0.6, 1.4)
-            polygon = _convex(generator, generator.uniform(radius, size - radius, 2), radius)
+            centre = generator.uniform(radius, size - radius, 2)
+            star = concave > 0 and generator.random() < concave  # no draw without stars: seeds keep their scenes
+            polygon = (_concave if star else _convex)(generator, centre, radius)
             if shapely.distance(polygon, placed).min() >= gap:
                 placed.append(polygon)
                 break
@@ -66,9 +74,23 @@ def random_scene(
 
 
 def _convex(rng: np.random.Generator, centre: np.ndarray, radius: float) -> shapely.Polygon:
-    """The hull of points on a circle, rounded to a thousandth of the radius so that it prints well."""
-    count = rng.integers(3, 9)
+    """The hull of points on a circle."""
+    count = int(rng.integers(3, 9))
+    return shapely.MultiPoint(_around(rng, centre, np.full(count, radius), radius)).convex_hull
+
+
+def _concave(rng: np.random.Generator, centre: np.ndarray, radius: float) -> shapely.Polygon:
+    """A polygon whose corners lie around a centre at several distances, drawn until it is not convex."""
+    while True:
+        distances = radius * rng.uniform(NEAREST, 1.0, int(rng.integers(5, 10)))
+        star = shapely.Polygon(_around(rng, centre, distances, radius))
+        if star.is_valid and star.area < BITTEN * star.convex_hull.area:
+            return star
+
+
+def _around(rng: np.random.Generator, centre: np.ndarray, distances: np.ndarray, size: float) -> np.ndarray:
+    """Points (k, 2) at distances (k,) around a centre, rounded to a thousandth of a size so that they print well."""
+    count = len(distances)
     angles = 2 * math.pi * (np.arange(count) + rng.uniform(0.1, 0.9, count)) / count
-    points = centre + radius * np.column_stack((np.cos(angles), np.sin(angles)))
-    digits = 3 - math.floor(math.log10(radius))
-    return shapely.MultiPoint(points.round(digits)).convex_hull
+    points = centre + distances[:, None] * np.column_stack((np.cos(angles), np.sin(angles)))
+    return np.asarray(points.round(3 - math.floor(math.log10(size))))

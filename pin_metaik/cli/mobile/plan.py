@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -13,82 +14,88 @@ import typer
 from rich.console import Console
 
 from pin_metaik.cli.codes import INTERRUPTED
+from pin_metaik.cli.mobile.common import (
+    Cells,
+    FitnessName,
+    Goal,
+    Join,
+    Json,
+    Resolution,
+    Rng,
+    SceneName,
+    Settings,
+    Specks,
+    Start,
+    Threshold,
+    Unknown,
+    VehicleName,
+    fitness_with,
+    planner_with,
+    print_report,
+    read_scene,
+    say_written,
+    warm_up,
+)
 from pin_metaik.cli.progress import progress_bar
-from pin_metaik.cli.versions import versions
 from pin_metaik.compare.report.write import need_figures
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import kept
-from pin_metaik.optimize import ALGORITHMS, AskTell, Budget
+from pin_metaik.optimize import ALGORITHMS, Budget
 from pin_metaik.output import writable
 
 if TYPE_CHECKING:  # shapely is an extra, and none of the other commands should wait for it
-    from pin_metaik.mobile import PathPlan, Scene, TrajectoryPlan, Vehicle
+    from pin_metaik.mobile import LearnedTurn, PathPlan, TrajectoryPlan, Vehicle
 
-UNITS = {"length": "that of the scene, m with a trajectory", "angle": "rad", "time": "s"}
 MARGIN = 0.1  # m, when a trajectory is wanted: curves need room inside the corners
-RANDOM = "random:"
 TRAJECTORIES = ("dp", "de", "ann")
-Tick = Callable[[AskTell], None]
-Place = tuple[float, float] | None
+OTHERS = "astar, rrt, rrtconnect, rrtstar, informed, prm"
 
 
 def plan(
-    scene: Annotated[
-        str,
-        typer.Argument(
-            help="A scene (.json), polygons (.geojson, .wkt), an occupancy grid (.npy), a ROS map (.yaml), the name "
-            "of a scene that comes with the package, or random:SEED or random:SEED:OBSTACLES."
-        ),
-    ],
-    method: Annotated[str, typer.Option(help=f"exact, or a metaheuristic: {', '.join(ALGORITHMS)}.")] = "exact",
-    fitness: Annotated[str, typer.Option(help="What a metaheuristic minimises: exact or paper (its Eq. 5).")] = "exact",
+    scene: SceneName,
+    method: Annotated[
+        str, typer.Option(help=f"exact; a metaheuristic: {', '.join(ALGORITHMS)}; or {OTHERS}.")
+    ] = "exact",
+    settings: Settings = None,
+    fitness: FitnessName = "exact",
     trajectory: Annotated[
         str | None, typer.Option(help=f"Plan a trajectory, too: {', '.join(TRAJECTORIES)}; lengths are metres.")
     ] = None,
-    start: Annotated[tuple[float, float] | None, typer.Option(metavar="X Y", help="Instead of the scene's.")] = None,
-    goal: Annotated[tuple[float, float] | None, typer.Option(metavar="X Y", help="Instead of the scene's.")] = None,
+    network: Annotated[
+        Path | None, typer.Option(help="For ann: a .npz of `mobile learn`; default: one learned anew.")
+    ] = None,
+    start: Start = None,
+    goal: Goal = None,
     radius: Annotated[float | None, typer.Option(help="Of the robot; default: 0, or the vehicle's.")] = None,
     margin: Annotated[
         float | None, typer.Option(help=f"To keep on top of that; default: 0, or {MARGIN} with a trajectory.")
     ] = None,
-    join: Annotated[
-        str | None, typer.Option(help="Corners of grown obstacles: mitre or round; default: mitre, round if it must.")
-    ] = None,
-    unknown: Annotated[
-        str | None, typer.Option(help="Of a grid: unknown cells are blocked (the default) or free.")
-    ] = None,
-    threshold: Annotated[
-        float | None, typer.Option(help="Of a grid: cells above it are occupied; default: 0, of a ROS map 99.")
-    ] = None,
-    specks: Annotated[
-        int | None, typer.Option(min=1, help="Of a grid: groups of fewer occupied cells are left out.")
-    ] = None,
-    resolution: Annotated[float | None, typer.Option(help="Of a .npy: width of a cell, m; default: 1.")] = None,
-    vehicle: Annotated[
-        str,
-        typer.Option(
-            help="Whose limits the trajectory keeps: nomad200, nomad200_driver, turtlebot3_burger, turtlebot3_waffle, "
-            "or a .json with others."
-        ),
-    ] = "nomad200",
+    join: Join = None,
+    unknown: Unknown = None,
+    threshold: Threshold = None,
+    specks: Specks = None,
+    resolution: Resolution = None,
+    vehicle: VehicleName = "nomad200",
     paths: Annotated[
         int, typer.Option(min=1, help="Homotopy classes to try; with a trajectory the quickest of them counts.")
     ] = 1,
     via: Annotated[int, typer.Option(min=1, help="Via points of a metaheuristic.")] = 5,
-    evaluations: Annotated[int, typer.Option(min=1, help="Paths a metaheuristic may try.")] = 5000,
+    evaluations: Annotated[
+        int, typer.Option(min=1, help="Paths a metaheuristic may try, or straight lines that others may test.")
+    ] = 5000,
     seeded: Annotated[bool, typer.Option("--seeded", help="Start one individual at the shortest path.")] = False,
-    rng: Annotated[int, typer.Option(min=0, help="Seed of every random choice.")] = 0,
+    rng: Rng = 0,
     out: Annotated[Path | None, typer.Option(help="Folder for scene, path and trajectory: JSON, CSV, PNG.")] = None,
     ros: Annotated[
         Path | None,
         typer.Option(help="A .yaml or .json for the path as a nav_msgs/Path; with a trajectory its poses and times."),
     ] = None,
     figures: Annotated[bool, typer.Option(help="Draw figures into --out; needs the extra plots.")] = True,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    as_json: Json = False,
 ) -> None:
     """Plan a path among obstacles. Ctrl-C keeps the best so far.
 
-    Exit code 0: planned, 1: what was found collides, 2: the call makes no sense, 130: interrupted.
+    Exit code 0: planned, 1: what was found collides, or nothing was, 2: the call makes no sense, 130: interrupted.
     """
     from pin_metaik import mobile
     from pin_metaik.mobile.ros import ros_file
@@ -106,17 +113,19 @@ def plan(
     robot = mobile.load_vehicle(vehicle)
     keep = radius if radius is not None else robot.radius if trajectory else 0.0
     room = margin if margin is not None else MARGIN if trajectory else 0.0
-    cells = {"unknown": unknown, "threshold": threshold, "specks": specks, "resolution": resolution}
-    given = {key: value for key, value in cells.items() if value is not None}
-    world = _scene(scene, start, goal, keep + room, given)
+    model = None if network is None else mobile.load_turn(network)
+    if model is not None and trajectory != "ann":
+        raise InvalidSetting("--network is for --trajectory ann")
+    planner, cost = planner_with(method, settings), fitness_with(fitness, settings)
+    world = read_scene(scene, start, goal, keep + room, Cells(unknown, threshold, specks, resolution))
     problem = mobile.PathProblem.of(world, keep, room, join)  # type: ignore[arg-type]  # it checks the join itself
-    _warm_up()
+    warm_up()
     with progress_bar("path") as watch:
         path = kept(
             lambda: mobile.plan_path(
                 problem,
-                method,
-                fitness=fitness,
+                planner,
+                fitness=cost,
                 via=via,
                 budget=Budget(evaluations=evaluations),
                 rng=rng,
@@ -124,9 +133,10 @@ def plan(
                 watch=watch,
             )
         )
+    path = replace(path, method=method)  # settings make an object of it, whose name is another
     plans = mobile.plan_alternatives(problem, paths) if paths > 1 else [path]
     motions = (
-        list(_motions(plans, robot, keep, trajectory, rng))
+        list(_motions(plans, robot, keep, trajectory, rng, model))
         if trajectory and path.success and not path.interrupted
         else []
     )
@@ -136,52 +146,31 @@ def plan(
     found = plans[best].as_dict()
     if len(plans) > 1:
         found["alternatives"] = [each.as_dict() for i, each in enumerate(plans) if i != best]
-    report: dict[str, Any] = {"versions": versions(), "units": UNITS, "path": found}
+    report: dict[str, Any] = {"path": found}
     if motion is not None:
         report["trajectory"] = {key: value for key, value in motion.as_dict().items() if key != "samples"}
     if as_json:
-        print(json.dumps(report, allow_nan=False))
+        print_report(report)
     else:
         _show(plans, motions, best)
     if out is not None:
-        for file in _write(out, plans, best, found, motion, figures):
-            Console(stderr=as_json).print(str(file), markup=False, highlight=False, soft_wrap=True)
+        say_written(_write(out, plans, best, found, motion, figures), as_json)
     if ros is not None:
         mobile.write_nav_path(ros, plans[best].path if motion is None else motion.trajectory)
-        Console(stderr=as_json).print(str(ros), markup=False, highlight=False, soft_wrap=True)
+        say_written([ros], as_json)
     if path.interrupted or any(each.interrupted for each in motions):
         raise typer.Exit(INTERRUPTED)
     raise typer.Exit(0 if path.success and (motion is None or motion.success) else 1)
 
 
-def _warm_up() -> None:
-    """Plan round a box, so that compiling and importing are not in the times shown."""
-    from pin_metaik import mobile
-
-    box = mobile.read_polygons([[(1.0, -1.0), (2.0, -1.0), (2.0, 1.0), (1.0, 1.0)]])
-    mobile.plan_path(mobile.Scene((0.0, 0.0), (3.0, 0.0), box))
-
-
-def _scene(source: str, start: Place, goal: Place, clearance: float, cells: dict[str, Any]) -> Scene:
-    """The scene of a source; ``cells`` says how a grid is read."""
-    from pin_metaik import mobile
-
-    if not source.startswith(RANDOM):
-        return mobile.load_scene(source, start, goal, **cells)
-    if cells:
-        raise InvalidSetting(f"{', '.join(f'--{key}' for key in cells)}: of an occupancy grid; a random scene is none")
-    seed, _, count = source.removeprefix(RANDOM).partition(":")
-    if not seed.isdigit() or not (count or "15").isdigit():
-        raise InvalidSetting(f"a random scene is random:SEED or random:SEED:OBSTACLES, not {source!r}")
-    gap = 0.1 + 2 * clearance  # with round joins the robot fits through everywhere
-    return mobile.random_scene(int(count or 15), int(seed), gap=gap, start=start, goal=goal)
-
-
-def _motions(plans: list[PathPlan], robot: Vehicle, radius: float, method: str, rng: int) -> Iterator[TrajectoryPlan]:
+def _motions(
+    plans: list[PathPlan], robot: Vehicle, radius: float, method: str, rng: int, model: LearnedTurn | None
+) -> Iterator[TrajectoryPlan]:
     from pin_metaik import mobile
     from pin_metaik.learn import OutsideTraining
 
-    model = mobile.learn_turn(robot) if method == "ann" and isinstance(robot, mobile.SynchroDrive) else None
+    if method == "ann" and model is None and isinstance(robot, mobile.SynchroDrive):
+        model = mobile.learn_turn(robot)
     for plan in plans:
         with progress_bar("trajectory") as watch, warnings.catch_warnings():
             warnings.simplefilter("ignore", OutsideTraining)  # the plan's notes say it
@@ -211,7 +200,8 @@ def _show(plans: list[PathPlan], motions: list[TrajectoryPlan], best: int) -> No
         if each.interrupted:
             console.print("  interrupted: the best so far")
         if not each.success:
-            console.print("  goes through an obstacle: not a path. Try more evaluations, or --method exact.")
+            what = "nothing was found" if each.status == "NOT_FOUND" else "goes through an obstacle: not a path"
+            console.print(f"  {what}. Try more evaluations, or --method exact.")
         if motions:
             console.print(f"  trajectory: {motions[i]}", soft_wrap=True)
             for note in motions[i].notes:

@@ -39,7 +39,7 @@ def convergence(canvas: Any, panels: Mapping[str, Mapping[str, Sequence[Array]]]
         cost: The cost with its unit.
         floor: Where smaller costs, zeros too, are drawn.
     """
-    colours = _colours(method for panel in panels.values() for method in panel)
+    colours = colours_of(method for panel in panels.values() for method in panel)
     axes = canvas.subplots(1, len(panels), sharey=True, squeeze=False)[0]
     for ax, (title, panel) in zip(axes, panels.items(), strict=True):
         for method, traces in panel.items():
@@ -64,7 +64,7 @@ def strip(canvas: Any, panels: Mapping[str, Mapping[str, Runs]], cost: str, floo
         cost: The cost with its unit.
         floor: Where smaller costs, zeros too, are drawn.
     """
-    colours = _colours([runs.method for panel in panels.values() for runs in panel.values()])
+    colours = colours_of([runs.method for panel in panels.values() for runs in panel.values()])
     axes = canvas.subplots(1, len(panels), sharey=True, squeeze=False)[0]
     for ax, (title, panel) in zip(axes, panels.items(), strict=True):
         for i, runs in enumerate(panel.values()):
@@ -88,5 +88,6 @@ def strip(canvas: Any, panels: Mapping[str, Mapping[str, Runs]], cost: str, floo
     canvas.legend(handles=marks, loc="outside lower center", ncols=len(marks), frameon=False)
 
 
-def _colours(methods: Iterable[str]) -> dict[str, str]:
+def colours_of(methods: Iterable[str]) -> dict[str, str]:
+    """A colour for each method."""
     return dict(zip(dict.fromkeys(methods), itertools.cycle(COLOURS), strict=False))

@@ -1,0 +1,110 @@
+"""``pin-metaik mobile evolve``: a metaheuristic's generations, step by step, as pictures or a film."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+
+from pin_metaik.cli.codes import INTERRUPTED
+from pin_metaik.cli.mobile.common import (
+    FitnessName,
+    Goal,
+    Rng,
+    SceneName,
+    Settings,
+    Start,
+    fitness_with,
+    planner_with,
+    read_scene,
+    say_written,
+)
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.figures import picture_file
+from pin_metaik.interrupts import kept
+from pin_metaik.optimize import ALGORITHMS, Budget
+from pin_metaik.watching import Population, Progress
+
+FILM = ".gif"
+PANEL = 2.7  # inches
+FRAMES_A_SECOND = 4
+
+
+def evolve(
+    scene: SceneName,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Generations side by side: .png, .svg, .pdf; as a film: .gif.")
+    ],
+    method: Annotated[str, typer.Option(help=f"A metaheuristic: {', '.join(ALGORITHMS)}.")] = "ga",
+    settings: Settings = None,
+    fitness: FitnessName = "exact",
+    steps: Annotated[int, typer.Option(min=2, max=100, help="Generations to show, from the first to the last.")] = 8,
+    start: Start = None,
+    goal: Goal = None,
+    radius: Annotated[float, typer.Option(help="Of the robot.")] = 0.0,
+    via: Annotated[int, typer.Option(min=1, help="Via points.")] = 5,
+    evaluations: Annotated[int, typer.Option(min=1, help="Paths it may try.")] = 5000,
+    rng: Rng = 0,
+) -> None:
+    """Step through the generations of a metaheuristic: the population's paths, and the best of each.
+
+    Exit code 0: its best path is free, 1: it is not, 2: makes no sense, 130: interrupted.
+    """
+    from pin_metaik import mobile
+
+    picture_file(output, FILM)
+    planner = planner_with(method, settings)
+    if method not in ALGORITHMS:
+        raise InvalidSetting(f"{method} has no generations: --method is one of {', '.join(ALGORITHMS)}")
+    problem = mobile.PathProblem.of(read_scene(scene, start, goal, radius), radius)
+    seen: list[tuple[int, Population]] = []
+
+    def watch(at: Progress) -> None:
+        if at.population is not None:
+            seen.append((int(at.done), at.population))
+
+    plan = kept(
+        lambda: mobile.plan_path(
+            problem,
+            planner,
+            fitness=fitness_with(fitness, settings),
+            via=via,
+            budget=Budget(evaluations=evaluations),
+            rng=rng,
+            watch=watch,
+        )
+    )
+    last = len(seen) - 1
+    chosen = sorted({round(last * (k / (steps - 1)) ** 2) for k in range(steps)})  # the first ones change most
+    titles = {f"generation {k + 1}, {seen[k][0]:,} paths": seen[k][1] for k in chosen}
+    _draw(output, problem, titles)
+    Console(highlight=False).print(str(plan), style="green" if plan else "yellow", soft_wrap=True)
+    say_written([output], as_json=False)
+    raise typer.Exit(INTERRUPTED if plan.interrupted else 0 if plan else 1)
+
+
+def _draw(output: Path, problem: Any, generations: dict[str, Population]) -> None:
+    from pin_metaik.mobile import plots
+
+    if output.suffix.lower() != FILM:
+        columns = min(len(generations), plots.WIDEST)
+        size = (PANEL * columns, PANEL * -(-len(generations) // columns))
+        plots.save(output, lambda figure: plots.draw_generations(figure, problem, generations), size)
+        return
+    from matplotlib.animation import FuncAnimation, PillowWriter
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(5.0, 5.2), layout="constrained")
+    FigureCanvasAgg(figure)
+    ax = figure.subplots()
+
+    def frame(entry: tuple[str, Population]) -> None:
+        ax.clear()
+        plots.draw_generation(ax, problem, entry[1])
+        ax.set_title(f"{entry[0]}: best {entry[1].costs.min():.4g}", fontsize="medium")
+
+    film = FuncAnimation(figure, frame, frames=list(generations.items()), cache_frame_data=False)
+    film.save(output, PillowWriter(fps=FRAMES_A_SECOND))

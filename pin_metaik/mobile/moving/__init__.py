@@ -1,0 +1,1 @@
+"""Obstacles that move, and paths with times among them: waiting where that is quicker than going round."""

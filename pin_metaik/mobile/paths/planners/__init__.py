@@ -1,0 +1,1 @@
+"""Planners that others made: A* on a grid, and trees and roadmaps of random samples, for comparison."""
