@@ -3,6 +3,7 @@
 from pin_metaik.collision.clouds import HeightField, Octree, PointCloud
 from pin_metaik.collision.contact import Contact, Distance
 from pin_metaik.collision.mesh import Mesh, MeshSize
+from pin_metaik.collision.move import Move, MoveStatus
 from pin_metaik.collision.obstacle import Obstacle
 from pin_metaik.collision.scene import load_scene, scene_names
 from pin_metaik.collision.shapes import Box, Capsule, Cone, Cylinder, HalfSpace, Plane, Shape, Sphere
@@ -20,6 +21,8 @@ __all__ = [
     "HeightField",
     "Mesh",
     "MeshSize",
+    "Move",
+    "MoveStatus",
     "Obstacle",
     "Octree",
     "Plane",

@@ -59,11 +59,12 @@ class Checker:
 
     def collides(self, q: NDArray[np.float64]) -> bool:
         """Whether anything collides at q (nq,)."""
-        if self.fixed:
-            return True
-        placed = self.solids.place(q)
+        return bool(self.fixed) or self.collides_placed(self.solids.place(q))
+
+    def collides_placed(self, placed: Placed) -> bool:
+        """Whether anything that moves collides where the bodies are placed."""
         for i, j, own in placed.near(self.asked):  # noqa: SIM110  # a generator takes a tenth of a check
-            if self._collide(placed, i, j, own):
+            if self.collide(placed, i, j, own):
                 return True
         return False
 
@@ -88,8 +89,8 @@ class Checker:
         for i, j, own in placed.near(self.asked):
             carriers = self._joint(i), self._joint(j)
             wanted = joints is None or all(joint in joints for joint in carriers)
-            if wanted and self._collide(placed, i, j, own):
-                depth = max(0.0, self._margin(i, j, own) - self._hulls(placed, i, j).distance)
+            if wanted and self.collide(placed, i, j, own):
+                depth = max(0.0, self.margin_of(i, j, own) - self._hulls(placed, i, j).distance)
                 found.append((Contact(self._name(i), self._name(j), depth), carriers))
         return found
 
@@ -102,7 +103,7 @@ class Checker:
             near = placed.near(self._bare, min(reach, best.distance))
             new = [(i, j, own) for i, j, own in near if (i, j) not in done]
             done.update((i, j) for i, j, _ in new)
-            coarse = [(placed.gap(*self._levels(*pair)[:2]), pair) for pair in new]
+            coarse = [(placed.gap(*self.levels_of(*pair)[:2]), pair) for pair in new]
             for gap, pair in sorted(coarse):
                 if gap > TOUCH and gap >= best.distance:
                     break  # coarse solids enclose: nothing beyond can be nearer
@@ -116,11 +117,11 @@ class Checker:
         placed = self.solids.place(q)
         total = 0.0
         for i, j, own in placed.near(self.asked):
-            a, b, *_ = self._levels(i, j, own)
+            a, b, *_ = self.levels_of(i, j, own)
             gap = placed.gap(a, b)
             if gap <= 0.0 and (a.mesh or b.mesh):
                 gap = self._hulls(placed, i, j).distance
-            total += max(0.0, self._margin(i, j, own) - gap)
+            total += max(0.0, self.margin_of(i, j, own) - gap)
         return total
 
     def near(self, q: NDArray[np.float64]) -> list[Near]:
@@ -128,7 +129,7 @@ class Checker:
         placed = self.solids.place(q)
         found = []
         for i, j, own in placed.near(self.asked, NEAR):
-            room = placed.distance(*self._levels(i, j, own)[:2]) - self._margin(i, j, own)
+            room = placed.distance(*self.levels_of(i, j, own)[:2]) - self.margin_of(i, j, own)
             normal = placed.normal
             if room <= NEAR and 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none
                 found.append(Near(room, normal, placed.points, (self._joint(i), self._joint(j))))
@@ -139,7 +140,7 @@ class Checker:
         """The pairs without their margins."""
         return replace(self.asked, margins=np.zeros(len(self.asked.margins)), margin=0.0)
 
-    def _margin(self, i: int, j: int, own: int) -> float:
+    def margin_of(self, i: int, j: int, own: int) -> float:
         """The distance at or below which a pair collides, m."""
         if own >= 0:
             return self._margins[own]
@@ -159,7 +160,7 @@ class Checker:
         moving = self.solids.moving
         return (moving[number] if number < len(moving) else self.solids.standing[number - len(moving)]).link
 
-    def _levels(self, i: int, j: int, own: int) -> tuple[Level, Level, Level, Level]:
+    def levels_of(self, i: int, j: int, own: int) -> tuple[Level, Level, Level, Level]:
         """The levels of two bodies that are asked first, and those that have the last word."""
         a, b = self.solids.levels[i], self.solids.levels[j]
         c, d = a.last[b.flat], b.last[a.flat]
@@ -167,16 +168,17 @@ class Checker:
             return c, d, c, d
         return a.first[b.flat], b.first[a.flat], c, d
 
-    def _collide(self, placed: Placed, i: int, j: int, own: int) -> bool:
-        margin = self._margin(i, j, own)
-        a, b, c, d = self._levels(i, j, own)
+    def collide(self, placed: Placed, i: int, j: int, own: int) -> bool:
+        """Whether a pair collides where the bodies are placed."""
+        margin = self.margin_of(i, j, own)
+        a, b, c, d = self.levels_of(i, j, own)
         if not self.exact or (a is c and b is d):
             return placed.overlap(a, b, margin)
         return placed.overlap(a, b, margin + ENCLOSED) and placed.overlap(c, d, margin)
 
     def _nearer(self, placed: Placed, i: int, j: int, own: int, best: Distance) -> Distance:
         """The distance of two bodies where it is less than the best, else that."""
-        levels = self._levels(i, j, own)
+        levels = self.levels_of(i, j, own)
         last = levels[2:] if self.exact else levels[:2]
         gap = placed.gap(*last)
         if gap > TOUCH and gap >= best.distance:

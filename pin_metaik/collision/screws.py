@@ -1,0 +1,145 @@
+"""How the joints of a robot turn and slide along a straight joint move."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from pin_metaik.errors import InvalidConfiguration, UnsupportedJoint
+from pin_metaik.kinematics.limits import UNBOUNDED
+from pin_metaik.kinematics.model import check_turns
+from pin_metaik.kinematics.paths import leader_of
+
+LITTLE = 1e-9  # rad; what turns less in the whole move has no axis that could be told from its digits
+FARTHEST = 1e6  # rad or m; what is farther has too few digits left behind the point
+LONGEST = 1e3  # rad or m, of a move
+VARYING = "JointModelSphericalZYX", "JointModelUniversal"  # their axes turn with the first angles; lengths stay 1
+
+
+@dataclass(frozen=True, eq=False)
+class Screws:
+    """The joints of a model, and what one step of all of them makes each do in its own frame.
+
+    Joints move with a constant twist along a straight move: Pinocchio integrates so, on every group of joints.
+
+    Attributes:
+        model: The model.
+    """
+
+    model: pin.Model
+
+    def way(self, q0: NDArray[np.float64], q1: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The tangent vector (nv,) from q0 to q1 (nq,), the short way round for joints without limits.
+
+        Raises:
+            InvalidConfiguration: If a quaternion, or a cosine and sine, is not of length 1, or a joint is farther from
+                its origin than ``FARTHEST`` or is to move farther than ``LONGEST``.
+        """
+        for q in (q0, q1):
+            check_turns(self.model, self._turned, q)
+            _check_size(f"a configuration of {self.model.name!r}", q, FARTHEST)
+        way: NDArray[np.float64] = pin.difference(self.model, q0, q1)
+        turn = 2.0 * np.pi
+        way[self._endless] -= turn * np.round(way[self._endless] / turn)
+        _check_size("a move", way, LONGEST)
+        return way
+
+    def along(self, way: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(J, 8) what each joint does on a way (nv,): a point of its axis, its direction, turn (rad) and slide (m).
+
+        Axes are in the joints' frames. A joint without an axis, or with one that turns on the way, has no direction
+        (zeros): it turns about its point, so that a lever is a distance from that.
+        """
+        twists = self._subspaces @ way  # (J, 6)
+        linear, angular = twists[:, :3], twists[:, 3:]
+        turn = np.linalg.norm(angular, axis=1)
+        rows = np.zeros((len(twists), 8))
+        plain = turn > LITTLE
+        turn_of = turn[plain, None]
+        rows[plain, 3:6] = u = angular[plain] / turn_of
+        rows[plain, :3] = np.cross(u, linear[plain]) / turn_of
+        rows[plain, 7] = np.abs((u * linear[plain]).sum(axis=1))
+        rows[~plain, 7] = np.linalg.norm(linear[~plain], axis=1)
+        rows[:, 6] = turn
+        for joint, freedoms in self._varying:
+            rows[joint] = 0.0
+            rows[joint, 6] = np.abs(way[freedoms]).sum()
+        return rows
+
+    @cached_property
+    def axes(self) -> NDArray[np.float64]:
+        """(J, 6) point and direction of the axis that a joint always turns about; NaN for one that has none."""
+        rows = np.full((self.model.njoints, 6), np.nan)
+        for j, joint in enumerate(self.model.joints):
+            if joint.nv <= 1 and j:
+                rows[j] = self.along(np.ones(self.model.nv))[j, :6]
+                if not rows[j, 3:].any():
+                    rows[j] = np.nan
+        return rows
+
+    @cached_property
+    def _turned(self) -> list[int]:
+        """Joints whose entries of q are a quaternion, or a cosine and sine."""
+        return [j for j, joint in enumerate(self.model.joints) if joint.nq > joint.nv]
+
+    @cached_property
+    def _endless(self) -> NDArray[np.int64]:
+        """Freedoms of joints that turn, have no limits, are one entry of q, and are not followed by others."""
+        low, high = self.model.lowerPositionLimit, self.model.upperPositionLimit
+        followed = {leader_of(self.model, j) for j, joint in enumerate(self.model.joints) if j and not joint.nq}
+        return np.array(
+            [
+                joint.idx_v
+                for j, joint in enumerate(self.model.joints)
+                if joint.nq == joint.nv == 1
+                and j not in followed
+                and low[joint.idx_q] <= -UNBOUNDED
+                and high[joint.idx_q] >= UNBOUNDED
+                and self._subspaces[j, 3:, joint.idx_v].any()
+            ],
+            dtype=np.int64,
+        )
+
+    @cached_property
+    def _varying(self) -> list[tuple[int, slice]]:
+        return [
+            (j, slice(joint.idx_v, joint.idx_v + joint.nv))
+            for j, joint in enumerate(self.model.joints)
+            if joint.shortname() in VARYING
+        ]
+
+    @cached_property
+    def _subspaces(self) -> NDArray[np.float64]:
+        """(J, 6, nv) the twist of each joint, linear part first, in its frame, by the freedoms of all.
+
+        Raises:
+            UnsupportedJoint: If a joint is made of several others: its twist varies along a move.
+        """
+        model, data = self.model, self.model.createData()
+        pin.forwardKinematics(model, data, pin.neutral(model))
+        subspaces = np.zeros((model.njoints, 6, model.nv))
+        for j, joint in enumerate(model.joints):
+            if joint.shortname() == "JointModelComposite":
+                raise UnsupportedJoint(
+                    f"joint {model.names[j]!r} is made of several others: moves of it are not checked; build the model "
+                    "with one joint for each of them"
+                )
+            if j:
+                first = joint.idx_v
+                S = np.array(data.joints[j].S).reshape(6, -1)
+                subspaces[j, :, first : first + S.shape[1]] = S
+        return subspaces
+
+
+def _check_size(what: str, values: NDArray[np.float64], most: float) -> None:
+    """Refuse numbers beyond a size.
+
+    Raises:
+        InvalidConfiguration: One is.
+    """
+    if (largest := float(np.abs(values).max(initial=0.0))) > most:
+        raise InvalidConfiguration(f"{what} whose way is checked is at most {most:g} rad or m, got {largest:g}")
