@@ -16,6 +16,7 @@ import pinocchio as pin
 
 import pin_metaik as mik
 from pin_metaik import collision, compare, kinematics, learn, mobile, optimize, robots, stewart
+from pin_metaik import planning as ompl
 from pin_metaik.ik import refine
 from pin_metaik.mobile.motion.trajectory import Phase
 
@@ -112,6 +113,11 @@ def planar() -> tuple[pin.Model, str, str]:
 @cache
 def arm() -> mik.Chain:
     return mik.Chain(planar()[0], "tip")
+
+
+@cache
+def adapter() -> ompl.Adapter:
+    return ompl.Adapter(arm(), world(), [1.0, 0.2])
 
 
 def asking() -> optimize.AskTell:
@@ -579,7 +585,9 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "targets": [[1.2, 0.3, 0.0], [1.2, 0.4, 0.0]],
         "q0": [0.1, 0.2],
         "max_step": 0.3,
+        "solver": mik.IKSolver(budget=FEW),
         "world": None,
+        "reconfigure": False,
         "rng": 0,
         "watch": None,
     },
@@ -1290,3 +1298,28 @@ def saved_grid() -> Path:
     file = Path("grid.npy")
     np.save(file, np.eye(3, dtype=np.int8))
     return file
+
+
+if ompl.installed():  # it has no wheels for some systems
+    MODULES["planning"] = ompl
+    OWNERS |= {
+        "planning.Adapter": adapter,
+        "planning.JointPlan": lambda: ompl.plan_joint_move(arm(), world(), [1.0, 0.2], [1.2, 0.4]),
+    }
+    CALLS |= {
+        "planning.Adapter": lambda: {"chain": arm(), "world": world(), "q0": [1.0, 0.2]},
+        "planning.Adapter.setup": dict,
+        "planning.Adapter.state": lambda: {"q": [1.0, 0.2]},
+        "planning.Adapter.q": lambda: {"state": adapter().state([1.0, 0.2])},
+        "planning.JointPlan.as_dict": dict,
+        "planning.installed": dict,
+        "planning.plan_joint_move": lambda: {
+            "chain": arm(),
+            "world": world(),
+            "q0": [1.0, 0.2],
+            "goals": [[1.2, 0.4]],
+            "planner": "RRTConnect",
+            "seconds": 1.0,
+            "rng": 0,
+        },
+    }

@@ -1,6 +1,7 @@
 """Inverse kinematics: targets, problems, solvers, refiners and results."""
 
 from pin_metaik.ik.batch import IKBatch, solve_ik_batch
+from pin_metaik.ik.breaks import BreakReason, PathBreak
 from pin_metaik.ik.path import IKPath, solve_ik_path
 from pin_metaik.ik.problem import IKProblem, Verdict
 from pin_metaik.ik.proof import Proof
@@ -14,6 +15,7 @@ from pin_metaik.ik.target import Target
 __all__ = [
     "DLS",
     "REFINERS",
+    "BreakReason",
     "IKBatch",
     "IKPath",
     "IKProblem",
@@ -21,6 +23,7 @@ __all__ = [
     "IKSolutions",
     "IKSolver",
     "IKStatus",
+    "PathBreak",
     "Proof",
     "Refinement",
     "Refiner",

@@ -23,6 +23,7 @@ def gather(
     evaluations: int,
     *,
     branch: bool = True,
+    settings: DLS = SETTINGS,
 ) -> tuple[int, int, int]:
     """Descend from each start (s, n) and add what is new to ``found``, of which ``known`` rows are taken.
 
@@ -34,7 +35,7 @@ def gather(
         problem.tasks,
         problem.descended,
         np.ascontiguousarray(starts),
-        np.array([SETTINGS.damping, PROGRESS, SETTINGS.iterations, evaluations]),
+        np.array([settings.damping, PROGRESS, settings.iterations, evaluations]),
         apart,
         patience,
         branch,

@@ -177,6 +177,11 @@ class IKSolver:
             ledger.x, ledger.met = better if kept else best, True
 
     @property
+    def descends(self) -> Refiner:
+        """What leads from a start to a solution nearby: its refiner; of a pure metaheuristic damped least squares."""
+        return DLS() if self._refiner is None else self._refiner
+
+    @property
     def _decides(self) -> bool:
         """Whether boxes take their turns with the search: they do in the automatic solver's."""
         return self.seeder == "auto" and self._refiner is not None
