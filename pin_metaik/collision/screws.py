@@ -54,17 +54,11 @@ class Screws:
         Axes are in the joints' frames. A joint without an axis, or with one that turns on the way, has no direction
         (zeros): it turns about its point, so that a lever is a distance from that.
         """
+        rows = self._units.copy()
         twists = self._subspaces @ way  # (J, 6)
-        linear, angular = twists[:, :3], twists[:, 3:]
-        turn = np.linalg.norm(angular, axis=1)
-        rows = np.zeros((len(twists), 8))
-        plain = turn > LITTLE
-        turn_of = turn[plain, None]
-        rows[plain, 3:6] = u = angular[plain] / turn_of
-        rows[plain, :3] = np.cross(u, linear[plain]) / turn_of
-        rows[plain, 7] = np.abs((u * linear[plain]).sum(axis=1))
-        rows[~plain, 7] = np.linalg.norm(linear[~plain], axis=1)
-        rows[:, 6] = turn
+        rows[:, 6:] *= np.abs((twists * self._twists).sum(axis=1, keepdims=True))
+        for joint in self._several:
+            rows[joint] = _screw(twists[joint])
         for joint, freedoms in self._varying:
             rows[joint] = 0.0
             rows[joint, 6] = np.abs(way[freedoms]).sum()
@@ -73,13 +67,28 @@ class Screws:
     @cached_property
     def axes(self) -> NDArray[np.float64]:
         """(J, 6) point and direction of the axis that a joint always turns about; NaN for one that has none."""
-        rows = np.full((self.model.njoints, 6), np.nan)
-        for j, joint in enumerate(self.model.joints):
-            if joint.nv <= 1 and j:
-                rows[j] = self.along(np.ones(self.model.nv))[j, :6]
-                if not rows[j, 3:].any():
-                    rows[j] = np.nan
+        rows = self._units[:, :6].copy()
+        rows[~rows[:, 3:].any(axis=1)] = np.nan
         return rows
+
+    @cached_property
+    def _twists(self) -> NDArray[np.float64]:
+        """(J, 6) the direction, of length 1, that a joint of one freedom has its twist along; zeros for all others."""
+        twists = self._subspaces.sum(axis=2)
+        twists[self._several] = 0.0
+        lengths = np.linalg.norm(twists, axis=1, keepdims=True)
+        unit: NDArray[np.float64] = twists / np.where(lengths > 0.0, lengths, 1.0)
+        return unit
+
+    @cached_property
+    def _units(self) -> NDArray[np.float64]:
+        """(J, 8) what a joint of one freedom does on a twist of length 1; zeros for all others."""
+        return np.array([_screw(twist) for twist in self._twists])
+
+    @cached_property
+    def _several(self) -> list[int]:
+        """Joints of several freedoms."""
+        return [j for j, joint in enumerate(self.model.joints) if joint.nv > 1]
 
     @cached_property
     def _turned(self) -> list[int]:
@@ -133,6 +142,16 @@ class Screws:
                 S = np.array(data.joints[j].S).reshape(6, -1)
                 subspaces[j, :, first : first + S.shape[1]] = S
         return subspaces
+
+
+def _screw(twist: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(8,) point, direction, turn and slide of a twist (6,), its linear part first."""
+    linear, angular = twist[:3], twist[3:]
+    turn = float(np.linalg.norm(angular))
+    if turn <= LITTLE:
+        return np.array([*np.zeros(6), turn, np.linalg.norm(linear)])
+    axis = angular / turn
+    return np.array([*(np.cross(axis, linear) / turn), *axis, turn, abs(float(axis @ linear))])
 
 
 def _check_size(what: str, values: NDArray[np.float64], most: float) -> None:

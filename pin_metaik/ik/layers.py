@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -20,7 +20,8 @@ from pin_metaik.ik.target import DEFAULT_TOLERANCE, FREE, Tolerance
 from pin_metaik.randomness import Rng
 from pin_metaik.watching import Progress, Watch, tell
 
-WIDEST = 48  # solutions in a layer, each way
+WIDEST, MOST = 48, 72  # solutions in a layer, and in one that is widened
+AROUND = 64  # poses before and after a break whose layers are widened
 FRESH = 24  # starts from the atlas and as many random ones for a layer of its own
 APART = 1e-2  # rad or m between solutions of one layer
 EVALUATIONS = 10_000  # for one layer, each way, if no solver says otherwise
@@ -82,7 +83,7 @@ class Layers:
             if not len(self.found[i]) and self.solver is not None:
                 self._solve(i, self.solver, followed[0] if len(followed) else x0)
             followed = self.found[i] if len(self.found[i]) else followed
-        for i in self._backwards():  # what only a later pose found may have begun earlier
+        for i in range(len(self.problems) - 2, -1, -1):  # what only a later pose found may have begun earlier
             self._add(i, self.problems[i], self.found[i + 1], WIDEST)
         if watch is not None:
             watch(Progress(len(self.problems), len(self.problems)))  # there is nothing left to end
@@ -92,27 +93,32 @@ class Layers:
         """Whether any pose leaves a choice: tolerances that are not small, or more joints than it needs."""
         return any(problem.loose or problem.chain.n > len(problem.rows) for problem in self.problems)
 
-    def widen(self, watch: Watch | None) -> None:
-        """Find more solutions of the poses that leave a choice: off the middle of tolerances, and along self-motions.
+    def widen(self, breaks: Collection[int], watch: Watch | None) -> None:
+        """Find more solutions where poses leave a choice: off the middle of tolerances, and along self-motions.
+
+        Args:
+            breaks: Poses that are not reached from the one before; these and poses without a solution, and some before
+                and after them, get more solutions.
+            watch: Called with poses done and in all.
 
         Raises:
             Stopped: The watch says so; the layers are those so far.
         """
-        total = len(self.problems)
-        followed = self._none
-        for i, problem in enumerate(self.problems):
-            tell(watch, Progress(i, total, label="within the tolerances"))
-            if problem.refuted in (None, Proof.LIMITS):
-                self._add(i, problem.whole, followed, 2 * WIDEST)
-                starts = np.concatenate([followed, self._drifted(i)])
-                for aim in self._aims(problem):
-                    self._add(i, aim, starts if len(starts) else problem.near(FRESH), 3 * WIDEST)
-            followed = self.found[i] if len(self.found[i]) else followed
-        for i in self._backwards():
-            self._add(i, self.problems[i].whole, self.found[i + 1], 4 * WIDEST)
-
-    def _backwards(self) -> Iterator[int]:
-        return iter(range(len(self.problems) - 2, -1, -1))
+        open_ones = np.array([problem.refuted in (None, Proof.LIMITS) for problem in self.problems])
+        wanted = np.array([not len(layer) for layer in self.found]) & open_ones
+        wanted[list(breaks)] = True
+        near = np.convolve(wanted, np.ones(2 * AROUND + 1), "same") > 0.5
+        chosen = np.flatnonzero(near[: len(wanted)] & open_ones).tolist()
+        for done, i in enumerate(chosen):
+            tell(watch, Progress(done, len(chosen), label="within the tolerances"))
+            problem, before = self.problems[i], self.found[i - 1] if i else self._none
+            self._add(i, problem.whole, before, WIDEST)
+            starts = np.concatenate([before, self._drifted(i)])
+            for aim in self._aims(problem):
+                self._add(i, aim, starts if len(starts) else problem.near(FRESH), MOST)
+        for i in reversed(chosen):
+            if i + 1 < len(self.problems):
+                self._add(i, self.problems[i].whole, self.found[i + 1], MOST)
 
     @property
     def _none(self) -> Floats:

@@ -155,7 +155,7 @@ def solve_ik_path(
         layers.fill(q0 is not None, watch)
         way = ways.best()
         if (way.breaks or len(way.rows) < len(problems)) and layers.flexible:
-            layers.widen(watch)
+            layers.widen(way.breaks, watch)
             way = min(way, replace(ways).best(), key=lambda one: (-len(one.rows), len(one.breaks)))
     except Stopped:
         interrupted = True

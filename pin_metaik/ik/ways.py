@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.kinematics import Chain
 
-BREAK = 1e6  # what a break costs, in rad or m of way: more than any path has
+BREAK = 1e5  # what a break costs, in rad or m of way: more than any path has
 ROUNDS = 400  # ways that are looked at; the steps that are left then count as breaks
 
 Floats = NDArray[np.float64]
+Singles = NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +57,7 @@ class Ways:
     base: Floats
     world: CollisionWorld | None
     moves: bool
-    _steps: dict[int, Floats] = field(init=False, default_factory=dict)  # costs (a, b) of the steps to each layer
+    _steps: dict[int, Singles] = field(init=False, default_factory=dict)  # costs (a, b) of the steps to each layer
     _known: set[tuple[int, int, int]] = field(init=False, default_factory=set)  # steps that were looked at
     _totals: dict[int, Floats] = field(init=False, default_factory=dict)  # costs (b,) up to each layer
     _before: dict[int, NDArray[np.int64]] = field(init=False, default_factory=dict)  # best row of the layer before
@@ -124,11 +125,12 @@ class Ways:
                 barred.append(here)
         return Way(rows, tuple(breaks), tuple(barred))
 
-    def _costs(self, before: Floats, here: Floats) -> Floats:
+    def _costs(self, before: Floats, here: Floats) -> Singles:
         """Costs (a, b) of the steps between two layers (a, n) and (b, n), with what is too long for a step."""
         step = self.chain.limits.way(before[:, None], here[None])  # (a, b, n)
-        costs: Floats = np.linalg.norm(step, axis=2) + BREAK * (np.abs(step) > self.bound).any(axis=2)
-        return costs
+        costs = np.linalg.norm(step, axis=2) + BREAK * (np.abs(step) > self.bound).any(axis=2)
+        kept: Singles = costs.astype(np.float32)  # they are, of all layers
+        return kept
 
     def _lengths(self, before: Floats, here: Floats) -> Floats:
         lengths: Floats = np.linalg.norm(self.chain.limits.way(before[:, None], here[None]), axis=2)
