@@ -14,6 +14,7 @@ from pin_metaik.ik import (
     DLS,
     REFINERS,
     IKBatch,
+    IKChoice,
     IKPath,
     IKProblem,
     IKResult,
@@ -26,6 +27,7 @@ from pin_metaik.ik import (
     Target,
     solve_ik,
     solve_ik_all,
+    solve_ik_any,
     solve_ik_batch,
     solve_ik_path,
 )
@@ -45,6 +47,7 @@ __all__ = [
     "Chain",
     "CollisionWorld",
     "IKBatch",
+    "IKChoice",
     "IKPath",
     "IKProblem",
     "IKResult",
@@ -65,6 +68,7 @@ __all__ = [
     "robot_names",
     "solve_ik",
     "solve_ik_all",
+    "solve_ik_any",
     "solve_ik_batch",
     "solve_ik_path",
 ]

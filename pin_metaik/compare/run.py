@@ -12,19 +12,16 @@ from pin_metaik.arguments import checked
 from pin_metaik.compare import environment
 from pin_metaik.compare.baggage import pack
 from pin_metaik.compare.case import NoTask
-from pin_metaik.compare.lock import locked
 from pin_metaik.compare.record import Record
 from pin_metaik.compare.store import ROWS, Appender, check_record, need_parquet, read_rows, write_parquet, write_record
 from pin_metaik.compare.suite import Suite
-from pin_metaik.compare.workers import Backend, need_joblib, worked
-from pin_metaik.errors import InvalidSetting
+from pin_metaik.folder_lock import locked
 from pin_metaik.interrupts import Pressed
 from pin_metaik.optimize.settings import one_of
 from pin_metaik.output import writable
 from pin_metaik.plain import fields_of
 from pin_metaik.watching import Progress, Watch, ended, tell
-
-MOST_JOBS = 10_000
+from pin_metaik.workers import Backend, check_jobs, need_joblib, worked
 
 
 @dataclass(frozen=True)
@@ -103,11 +100,10 @@ def compare(
         Interrupted: Ctrl-C; its ``result`` is the outcome so far, and the same call goes on from there.
     """
     need_parquet()
-    if jobs == 0 or abs(jobs) > MOST_JOBS:
-        raise InvalidSetting(f"jobs is a number of processes, 1 to {MOST_JOBS:,}, or -1: one a core; got {jobs}")
+    check_jobs(jobs)
     one_of("backend", backend, Backend)
     writable(folder, folder=True)
-    need_joblib()
+    need_joblib("comparing methods")
     began = perf_counter()
     absent = suite.absent()
     if len(absent) == len(suite.arms) * len(suite.tasks):

@@ -1,5 +1,6 @@
 """Inverse kinematics: targets, problems, solvers, refiners and results."""
 
+from pin_metaik.ik.any import IKChoice, solve_ik_any
 from pin_metaik.ik.batch import IKBatch, solve_ik_batch
 from pin_metaik.ik.breaks import BreakReason, PathBreak
 from pin_metaik.ik.path import IKPath, solve_ik_path
@@ -17,6 +18,7 @@ __all__ = [
     "REFINERS",
     "BreakReason",
     "IKBatch",
+    "IKChoice",
     "IKPath",
     "IKProblem",
     "IKResult",
@@ -31,6 +33,7 @@ __all__ = [
     "Verdict",
     "solve_ik",
     "solve_ik_all",
+    "solve_ik_any",
     "solve_ik_batch",
     "solve_ik_path",
 ]

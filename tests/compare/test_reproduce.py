@@ -6,10 +6,10 @@ import pytest
 from typer.testing import CliRunner
 
 from pin_metaik import cli
-from pin_metaik.compare.lock import locked
 from pin_metaik.compare.papers import aerial_arm
 from pin_metaik.compare.papers.arm import Trial
 from pin_metaik.errors import CannotWrite, InvalidSetting
+from pin_metaik.folder_lock import locked
 
 
 def command(*words):

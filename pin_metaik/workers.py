@@ -5,52 +5,76 @@ from __future__ import annotations
 import contextlib
 import threading
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from multiprocessing import resource_tracker
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, Protocol, TypeAlias, TypeVar
 
-from pin_metaik.compare.trial import Trial
-from pin_metaik.compare.unit import Unit
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import Pressed, deaf_children
 from pin_metaik.lookup import need
 
+T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
 Backend: TypeAlias = Literal["loky", "dask"]
 
 CONNECTING = 10.0  # s
+MOST_JOBS = 10_000
 LOKYS_THREAD = "ExecutorManagerThread"
 
 
-def need_joblib() -> None:
-    """Make sure that tasks can be handed to workers.
+class Unit(Protocol[T_co]):
+    """A part of the work, which can be sent to another process."""
+
+    def work(self) -> T_co:
+        """Do it."""
+        ...
+
+
+def need_joblib(feature: str) -> None:
+    """Make sure that work can be handed to workers.
 
     Raises:
         MissingExtra: joblib is not installed.
     """
-    need("comparing methods", "compare", "joblib")
+    need(feature, "compare", "joblib")
 
 
-def worked(units: list[Unit], jobs: int, backend: Backend, scheduler: str | None) -> Iterator[list[Trial]]:
-    """The rows of units, in the order in which they are finished."""
+def check_jobs(jobs: int) -> None:
+    """Make sure that a number of processes is one.
+
+    Raises:
+        InvalidSetting: It is not.
+    """
+    if jobs == 0 or abs(jobs) > MOST_JOBS:
+        raise InvalidSetting(f"jobs is a number of processes, 1 to {MOST_JOBS:,}, or -1: one a core; got {jobs}")
+
+
+def worked(units: Sequence[Unit[T]], jobs: int, backend: Backend, scheduler: str | None) -> Iterator[T]:
+    """What units come to, in the order in which they are finished.
+
+    Raises:
+        MissingExtra: joblib or distributed is not installed.
+        InvalidSetting: The scheduler cannot be reached.
+    """
     with contextlib.ExitStack() as stack:
         chosen: dict[str, Any] = {"backend": backend, "n_jobs": jobs}
         if backend == "dask":
             chosen |= {"client": stack.enter_context(_cluster(scheduler)), "n_jobs": -1}
         stack.enter_context(_no_last_words())
         with Pressed(held=True) as pressed:  # or it might come in a callback of weak references, which swallows it
-            rows = _begun(units, chosen)
+            results = _begun(units, chosen)
         try:
             pressed.check()
-            for trials in rows:  # noqa: UP028  # `yield from` would close them before the lines below
-                yield trials
+            for result in results:  # noqa: UP028  # `yield from` would close them before the lines below
+                yield result
         finally:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # joblib's, of tasks that an interrupt leaves undone
-                rows.close()
+                results.close()
 
 
-def _begun(units: list[Unit], chosen: dict[str, Any]) -> Any:
-    """The generator of rows, its processes begun; they do not hear Ctrl-C."""
+def _begun(units: Sequence[Unit[Any]], chosen: dict[str, Any]) -> Any:
+    """The generator of results, its processes begun; they do not hear Ctrl-C."""
     from joblib import Parallel, delayed, parallel_config
     from joblib.externals.loky.backend import resource_tracker as lokys_tracker
 
@@ -58,7 +82,11 @@ def _begun(units: list[Unit], chosen: dict[str, Any]) -> Any:
         tracker.ensure_running()
     with parallel_config(**chosen), deaf_children():
         parallel = Parallel(return_as="generator_unordered", pre_dispatch="3*n_jobs")
-        return parallel(delayed(Unit.work)(unit) for unit in units)
+        return parallel(delayed(_work)(unit) for unit in units)
+
+
+def _work(unit: Unit[T]) -> T:
+    return unit.work()
 
 
 @contextlib.contextmanager
