@@ -33,6 +33,7 @@ from pin_metaik.ik import (
 )
 from pin_metaik.kinematics import Chain, Limits
 from pin_metaik.optimize import ALGORITHMS, AskTell, Box, Budget, Metaheuristic, Search, minimize
+from pin_metaik.reachable import BasePlacement, Reachability, place_base, reachability
 from pin_metaik.robots import Robot, load_robot, robot_names
 
 __version__ = "0.1.0"
@@ -42,6 +43,7 @@ __all__ = [
     "DLS",
     "REFINERS",
     "AskTell",
+    "BasePlacement",
     "Box",
     "Budget",
     "Chain",
@@ -58,6 +60,7 @@ __all__ = [
     "MetaIKError",
     "Metaheuristic",
     "Proof",
+    "Reachability",
     "Refinement",
     "Refiner",
     "Robot",
@@ -65,6 +68,8 @@ __all__ = [
     "Target",
     "load_robot",
     "minimize",
+    "place_base",
+    "reachability",
     "robot_names",
     "solve_ik",
     "solve_ik_all",

@@ -43,6 +43,9 @@ def inverse() -> bool:
     every: mik.IKSolutions = mik.solve_ik_all(chain, poses[0])
     batch: mik.IKBatch = mik.solve_ik_batch(chain, [poses[0], poses[0]])
     path: mik.IKPath = mik.solve_ik_path(chain, [poses[0], poses[0]], q, max_step=0.2)
+    choice: mik.IKChoice = mik.solve_ik_any(chain, [poses[0], poses[0]])
+    map_: mik.Reachability = mik.reachability(chain, [poses[0].translation], 2)
+    place: mik.BasePlacement = mik.place_base(chain, [poses[0]], budget=mik.Budget(evaluations=20))
     target = mik.Target(poses[0], orientation_tolerance=(1e-5, 1e-5, np.inf))
     budget = mik.Budget(evaluations=2000)
     solver = mik.IKSolver("gwo", mik.DLS(), budget=budget)
@@ -55,6 +58,8 @@ def inverse() -> bool:
     world.add(collision.Obstacle("wall", collision.Box((0.1, 2.0, 2.0)), (-1.0, 0.0, 0.5)))
     free = mik.solve_ik(chain, poses[0], world=world)
     print(len(names), status.name, proof, len(every), len(batch), path.continuous, seeded.success, free.success)
+    move: collision.Move = world.first_contact(q, q)
+    print(choice.index, map_.share, place.pose, move.status, world.clear_between(q, q), path.reasons)
     print(problem, searched.status, mik.REFINERS, world.in_collision(q), world.min_distance(q).distance)
     return result.success
 
