@@ -15,7 +15,7 @@ import numpy as np
 import pinocchio as pin
 
 import pin_metaik as mik
-from pin_metaik import collision, compare, kinematics, learn, mobile, optimize, robots, stewart
+from pin_metaik import collision, compare, kinematics, learn, mobile, optimize, reachable, robots, stewart
 from pin_metaik import planning as ompl
 from pin_metaik.ik import refine
 from pin_metaik.mobile.motion.trajectory import Phase
@@ -33,6 +33,7 @@ MODULES = {
     "stewart": stewart,
     "mobile": mobile,
     "compare": compare,
+    "reachable": reachable,
 }
 REGISTRIES: dict[str, Mapping[str, Any]] = {
     "ALGORITHMS": optimize.ALGORITHMS,
@@ -118,6 +119,17 @@ def arm() -> mik.Chain:
 @cache
 def adapter() -> ompl.Adapter:
     return ompl.Adapter(arm(), world(), [1.0, 0.2])
+
+
+@cache
+def reached() -> mik.Reachability:
+    return mik.reachability(arm(), reachable.Grid((1.0, 0.0, 0.0), (1.5, 0.5, 0.0), 0.5))
+
+
+def solid_axes() -> Any:
+    from matplotlib.figure import Figure
+
+    return Figure().add_subplot(projection="3d")
 
 
 def asking() -> optimize.AskTell:
@@ -312,6 +324,9 @@ OWNERS: dict[str, Callable[[], Any]] = {
     "compare.Summary": lambda: compare.Summary(2, 1, (10.0, 20.0), None, 0, 0),
     "learn.Clusters": lambda: learn.fuzzy_c_means(data()[0], 2),
     "learn.Training": lambda: regressor().training,
+    "mik.IKChoice": lambda: mik.solve_ik_any(chain(), [POSE]),
+    "mik.Reachability": reached,
+    "mik.BasePlacement": lambda: mik.place_base(arm(), [[1.2, 0.3, 0.0]], budget=optimize.Budget(evaluations=20)),
     "mik.IKBatch": lambda: mik.solve_ik_batch(chain(), [POSE], workers=1),
     "mik.IKPath": lambda: mik.solve_ik_path(chain(), [POSE]),
     "mik.IKSolutions": lambda: mik.solve_ik_all(chain(), POSE),
@@ -591,6 +606,60 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "rng": 0,
         "watch": None,
     },
+    "mik.IKChoice.as_dict": dict,
+    "mik.solve_ik_any": lambda: {
+        "chain": arm(),
+        "targets": [[1.2, 0.3, 0.0], [1.2, 0.4, 0.0]],
+        "q0": [0.1, 0.2],
+        "solver": mik.IKSolver(budget=FEW),
+        "world": None,
+        "rng": 0,
+        "watch": None,
+    },
+    # reachable
+    "mik.Reachability.as_dict": dict,
+    "mik.Reachability.at": lambda: {"xyz": [1.2, 0.3, 0.0]},
+    "mik.Reachability.save": lambda: {"path": "map.npz"},
+    "mik.Reachability.load": lambda: {"path": reached().save("map.npz")},
+    "mik.Reachability": lambda: {
+        "positions": np.zeros((1, 3)),
+        "orientations": np.eye(3)[None],
+        "status": np.zeros((1, 1), np.uint8),
+        "manipulability": np.zeros((1, 1), np.float32),
+        "shape": (1, 1, 1),
+        "seconds": 0.0,
+    },
+    "mik.reachability": lambda: {
+        "chain": arm(),
+        "grid": [[1.2, 0.3, 0.0]],
+        "orientations": None,
+        "q0": [0.1, 0.2],
+        "solver": mik.IKSolver(budget=FEW),
+        "world": None,
+        "jobs": None,
+        "backend": "loky",
+        "scheduler": None,
+        "folder": None,
+        "rng": 0,
+        "watch": None,
+    },
+    "mik.BasePlacement.as_dict": dict,
+    "mik.place_base": lambda: {
+        "chain": arm(),
+        "targets": [[1.2, 0.3, 0.0]],
+        "region": mik.Box([0.0, 0.0, -1.0], [1.0, 1.0, 1.0]),
+        "q0": [0.1, 0.2],
+        "solver": mik.IKSolver(budget=FEW),
+        "world": None,
+        "algorithm": "de",
+        "budget": optimize.Budget(evaluations=20),
+        "rng": 0,
+        "watch": None,
+    },
+    "reachable.Grid": lambda: {"lower": (1.0, 0.0, 0.0), "upper": (1.5, 0.5, 0.0), "spacing": 0.5},
+    "reachable.spread_rotations": lambda: {"count": 3},
+    "reachable.draw_reachability": lambda: {"figure": figure(), "found": reached(), "slices": 1},
+    "reachable.save_reachability": lambda: {"found": reached(), "path": "map.png", "slices": 1},
     # collision
     "collision.Box": lambda: {"size": (1.0, 1.0, 1.0)},
     "collision.Box.geometry": dict,
@@ -606,6 +675,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "collision.Plane.geometry": dict,
     "collision.Sphere": lambda: {"radius": 0.1},
     "collision.Sphere.geometry": dict,
+    "collision.draw_world": lambda: {"axes": solid_axes(), "world": world(), "Q": [[1.0, 0.2]]},
     "collision.Move.at": lambda: {"fraction": 0.5},
     "collision.Move.as_dict": dict,
     "collision.Mesh": lambda: {

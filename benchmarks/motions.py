@@ -171,8 +171,11 @@ class Meshes:
         for request in self.placed.collisionRequests:
             request.gjk_initial_guess = coal.GJKInitialGuess.DefaultGuess
 
+        tree = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager
+        self.manager = tree(self.model, self.geometry, self.placed)
+
     def collide(self, q: Floats) -> bool:
-        return bool(pin.computeCollisions(self.model, self.data, self.geometry, self.placed, q, True))
+        return bool(pin.computeCollisions(self.model, self.data, self.manager, q, True))
 
 
 def among_obstacles(name: str, count: int, samples: int) -> str:
