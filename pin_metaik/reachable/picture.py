@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from pin_metaik.arguments import checked
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.lookup import need
 from pin_metaik.optimize.settings import few
 from pin_metaik.output import writable
@@ -56,10 +57,12 @@ def draw_reachability(figure: Any, found: Reachability, *, slices: int = 4) -> N
 
     Raises:
         MissingExtra: If matplotlib is not installed.
-        InvalidSetting: If there is not at least one slice.
+        InvalidSetting: If there is not at least one slice, or the figure is none.
     """
     need("a picture", "plots", "matplotlib")
     few("slices", slices)
+    if not hasattr(figure, "subplots"):
+        raise InvalidSetting("figure is one of matplotlib's: matplotlib.figure.Figure()")
     values = (found.share, "share of orientations"), (found.best, "best manipulability")
     if not _is_grid(found):
         for ax, (colours, title) in zip(figure.subplots(1, 2, squeeze=False)[0], values, strict=True):
