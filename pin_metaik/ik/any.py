@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import checked, shown
+from pin_metaik.arguments import checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.ik.problem import IKProblem
@@ -109,8 +109,6 @@ def solve_ik_any(
         InvalidSetting: If the world is another model's than the chain.
     """
     began = perf_counter()
-    if isinstance(targets, str) or not (isinstance(targets, Sequence) or np.ndim(targets) > 1):
-        raise InvalidTarget(f"targets are a list of poses or positions, got {shown(targets)}")
     if len(targets) == 0:
         raise InvalidTarget("one of no targets cannot be met: give at least one")
     seed = as_seed(rng)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import array, checked, shown
+from pin_metaik.arguments import array, checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidSetting, InvalidTarget
 from pin_metaik.ik.breaks import BreakReason, PathBreak
@@ -135,8 +135,6 @@ def solve_ik_path(
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
     """
     began = perf_counter()
-    if isinstance(targets, str) or not (isinstance(targets, Sequence) or np.ndim(targets)):
-        raise InvalidTarget(f"targets are a list of poses or positions, got {shown(targets)}")
     if len(targets) == 0:
         raise InvalidTarget("a path has at least one target")
     given = array("max_step", max_step, "...", finite=False)

@@ -13,7 +13,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import checked, shown
+from pin_metaik.arguments import checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.dexterity import manipulability
 from pin_metaik.errors import InvalidBounds, InvalidTarget
@@ -133,8 +133,6 @@ def place_base(
     """
     began = perf_counter()
     check_world(chain, world)
-    if isinstance(targets, str) or not (isinstance(targets, Sequence) or np.ndim(targets) > 1):
-        raise InvalidTarget(f"targets are a list of poses or positions, got {shown(targets)}")
     if len(targets) == 0:
         raise InvalidTarget("a place is looked for at least one target, got none")
     site = _Site(chain, [Target.of(target) for target in targets], q0, world)
