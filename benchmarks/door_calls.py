@@ -16,7 +16,8 @@ import numpy as np
 import pinocchio as pin
 
 import pin_metaik as mik
-from pin_metaik import collision, compare, kinematics, learn, mobile, optimize, robots, stewart, timing
+from pin_metaik import collision, compare, kinematics, learn, mobile, optimize, reachable, robots, stewart, timing
+from pin_metaik import planning as ompl
 from pin_metaik.ik import refine
 from pin_metaik.mobile.motion.trajectory import Phase
 from pin_metaik.mobile.paths.planners.protocol import LineTests
@@ -35,6 +36,7 @@ MODULES = {
     "mobile": mobile,
     "compare": compare,
     "timing": timing,
+    "reachable": reachable,
 }
 REGISTRIES: dict[str, Mapping[str, Any]] = {
     "ALGORITHMS": optimize.ALGORITHMS,
@@ -125,6 +127,22 @@ def planar() -> tuple[pin.Model, str, str]:
 @cache
 def arm() -> mik.Chain:
     return mik.Chain(planar()[0], "tip")
+
+
+@cache
+def adapter() -> ompl.Adapter:
+    return ompl.Adapter(arm(), world(), [1.0, 0.2])
+
+
+@cache
+def reached() -> mik.Reachability:
+    return mik.reachability(arm(), reachable.Grid((1.0, 0.0, 0.0), (1.5, 0.5, 0.0), 0.5))
+
+
+def solid_axes() -> Any:
+    from matplotlib.figure import Figure
+
+    return Figure().add_subplot(projection="3d")
 
 
 def asking() -> optimize.AskTell:
@@ -355,6 +373,9 @@ OWNERS: dict[str, Callable[[], Any]] = {
     "compare.Summary": lambda: compare.Summary(2, 1, (10.0, 20.0), None, 0, 0),
     "learn.Clusters": lambda: learn.fuzzy_c_means(data()[0], 2),
     "learn.Training": lambda: regressor().training,
+    "mik.IKChoice": lambda: mik.solve_ik_any(chain(), [POSE]),
+    "mik.Reachability": reached,
+    "mik.BasePlacement": lambda: mik.place_base(arm(), [[1.2, 0.3, 0.0]], budget=optimize.Budget(evaluations=20)),
     "mik.IKBatch": lambda: mik.solve_ik_batch(chain(), [POSE], workers=1),
     "mik.Follower": lambda: mik.Follower(chain()),
     "mik.IKPath": lambda: mik.solve_ik_path(chain(), [POSE]),
@@ -378,6 +399,7 @@ OWNERS: dict[str, Callable[[], Any]] = {
     "collision.Octree": lambda: collision.Octree([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]], 0.05),
     "collision.Plane": collision.Plane,
     "collision.PointCloud": lambda: collision.PointCloud([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]], 0.05),
+    "collision.Move": lambda: world().first_contact([1.0, 0.2], [0.1, 0.2]),
     "collision.Sphere": lambda: collision.Sphere(0.1),
     "learn.Network": lambda: learn.Network(2, (2,)),
     "learn.Regressor": regressor,
@@ -512,6 +534,20 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.CollisionWorld.min_distance": lambda: {"q": [0.1, 0.2]},
     "mik.CollisionWorld.in_collision_batch": lambda: {"Q": [[0.1, 0.2]], "workers": 1},
     "mik.CollisionWorld.min_distance_batch": lambda: {"Q": [[0.1, 0.2]], "workers": 1},
+    "mik.CollisionWorld.clear_between": lambda: {"q0": [1.0, 0.2], "q1": [1.2, 0.4], "resolution": 1e-3},
+    "mik.CollisionWorld.first_contact": lambda: {"q0": [1.0, 0.2], "q1": [0.1, 0.2], "resolution": 1e-3},
+    "mik.CollisionWorld.clear_between_batch": lambda: {
+        "Q0": [[1.0, 0.2]],
+        "Q1": [[1.2, 0.4]],
+        "resolution": 1e-3,
+        "workers": 1,
+    },
+    "mik.CollisionWorld.first_contact_batch": lambda: {
+        "Q0": [[1.0, 0.2]],
+        "Q1": [[0.1, 0.2]],
+        "resolution": 1e-3,
+        "workers": 1,
+    },
     "mik.IKProblem.of": lambda: {"chain": chain(), "target": POSE, "world": None},
     "mik.IKProblem.at": lambda: {"q": X6},
     "mik.IKProblem.linearize": lambda: {"x": np.array(X6)},
@@ -667,10 +703,66 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "targets": [[1.2, 0.3, 0.0], [1.2, 0.4, 0.0]],
         "q0": [0.1, 0.2],
         "max_step": 0.3,
+        "solver": mik.IKSolver(budget=FEW),
+        "world": None,
+        "reconfigure": False,
+        "rng": 0,
+        "watch": None,
+    },
+    "mik.IKChoice.as_dict": dict,
+    "mik.solve_ik_any": lambda: {
+        "chain": arm(),
+        "targets": [[1.2, 0.3, 0.0], [1.2, 0.4, 0.0]],
+        "q0": [0.1, 0.2],
+        "solver": mik.IKSolver(budget=FEW),
         "world": None,
         "rng": 0,
         "watch": None,
     },
+    # reachable
+    "mik.Reachability.as_dict": dict,
+    "mik.Reachability.at": lambda: {"xyz": [1.2, 0.3, 0.0]},
+    "mik.Reachability.save": lambda: {"path": "map.npz"},
+    "mik.Reachability.load": lambda: {"path": reached().save("map.npz")},
+    "mik.Reachability": lambda: {
+        "positions": np.zeros((1, 3)),
+        "orientations": np.eye(3)[None],
+        "status": np.zeros((1, 1), np.uint8),
+        "manipulability": np.zeros((1, 1), np.float32),
+        "shape": (1, 1, 1),
+        "seconds": 0.0,
+    },
+    "mik.reachability": lambda: {
+        "chain": arm(),
+        "grid": [[1.2, 0.3, 0.0]],
+        "orientations": None,
+        "q0": [0.1, 0.2],
+        "solver": mik.IKSolver(budget=FEW),
+        "world": None,
+        "jobs": None,
+        "backend": "loky",
+        "scheduler": None,
+        "folder": None,
+        "rng": 0,
+        "watch": None,
+    },
+    "mik.BasePlacement.as_dict": dict,
+    "mik.place_base": lambda: {
+        "chain": arm(),
+        "targets": [[1.2, 0.3, 0.0]],
+        "region": mik.Box([0.0, 0.0, -1.0], [1.0, 1.0, 1.0]),
+        "q0": [0.1, 0.2],
+        "solver": mik.IKSolver(budget=FEW),
+        "world": None,
+        "algorithm": "de",
+        "budget": optimize.Budget(evaluations=20),
+        "rng": 0,
+        "watch": None,
+    },
+    "reachable.Grid": lambda: {"lower": (1.0, 0.0, 0.0), "upper": (1.5, 0.5, 0.0), "spacing": 0.5},
+    "reachable.spread_rotations": lambda: {"count": 3},
+    "reachable.draw_reachability": lambda: {"figure": figure(), "found": reached(), "slices": 1},
+    "reachable.save_reachability": lambda: {"found": reached(), "path": "map.png", "slices": 1},
     # collision
     "collision.Box": lambda: {"size": (1.0, 1.0, 1.0)},
     "collision.Box.geometry": dict,
@@ -686,6 +778,9 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "collision.Plane.geometry": dict,
     "collision.Sphere": lambda: {"radius": 0.1},
     "collision.Sphere.geometry": dict,
+    "collision.draw_world": lambda: {"axes": solid_axes(), "world": world(), "Q": [[1.0, 0.2]]},
+    "collision.Move.at": lambda: {"fraction": 0.5},
+    "collision.Move.as_dict": dict,
     "collision.Mesh": lambda: {
         "vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
         "triangles": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
@@ -1424,3 +1519,28 @@ def saved_grid() -> Path:
     file = Path("grid.npy")
     np.save(file, np.eye(3, dtype=np.int8))
     return file
+
+
+if ompl.installed():  # it has no wheels for some systems
+    MODULES["planning"] = ompl
+    OWNERS |= {
+        "planning.Adapter": adapter,
+        "planning.JointPlan": lambda: ompl.plan_joint_move(arm(), world(), [1.0, 0.2], [1.2, 0.4]),
+    }
+    CALLS |= {
+        "planning.Adapter": lambda: {"chain": arm(), "world": world(), "q0": [1.0, 0.2]},
+        "planning.Adapter.setup": dict,
+        "planning.Adapter.state": lambda: {"q": [1.0, 0.2]},
+        "planning.Adapter.q": lambda: {"state": adapter().state([1.0, 0.2])},
+        "planning.JointPlan.as_dict": dict,
+        "planning.installed": dict,
+        "planning.plan_joint_move": lambda: {
+            "chain": arm(),
+            "world": world(),
+            "q0": [1.0, 0.2],
+            "goals": [[1.2, 0.4]],
+            "planner": "RRTConnect",
+            "seconds": 1.0,
+            "rng": 0,
+        },
+    }

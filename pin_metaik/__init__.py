@@ -14,6 +14,7 @@ from pin_metaik.ik import (
     DLS,
     REFINERS,
     IKBatch,
+    IKChoice,
     IKPath,
     IKProblem,
     IKResult,
@@ -27,12 +28,14 @@ from pin_metaik.ik import (
     goals,
     solve_ik,
     solve_ik_all,
+    solve_ik_any,
     solve_ik_batch,
     solve_ik_path,
 )
 from pin_metaik.kinematics import Chain, Limits
 from pin_metaik.motion import Follower, FollowerStep, Following
 from pin_metaik.optimize import ALGORITHMS, AskTell, Box, Budget, Metaheuristic, Search, minimize
+from pin_metaik.reachable import BasePlacement, Reachability, place_base, reachability
 from pin_metaik.robots import Robot, load_robot, robot_names
 from pin_metaik.timing import MotionLimits, TimedPath, time_path
 
@@ -43,6 +46,7 @@ __all__ = [
     "DLS",
     "REFINERS",
     "AskTell",
+    "BasePlacement",
     "Box",
     "Budget",
     "Chain",
@@ -51,6 +55,7 @@ __all__ = [
     "FollowerStep",
     "Following",
     "IKBatch",
+    "IKChoice",
     "IKPath",
     "IKProblem",
     "IKResult",
@@ -62,6 +67,7 @@ __all__ = [
     "Metaheuristic",
     "MotionLimits",
     "Proof",
+    "Reachability",
     "Refinement",
     "Refiner",
     "Robot",
@@ -71,9 +77,12 @@ __all__ = [
     "goals",
     "load_robot",
     "minimize",
+    "place_base",
+    "reachability",
     "robot_names",
     "solve_ik",
     "solve_ik_all",
+    "solve_ik_any",
     "solve_ik_batch",
     "solve_ik_path",
     "time_path",

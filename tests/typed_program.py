@@ -49,6 +49,9 @@ def inverse() -> bool:
     why: mik.Following = tick.status
     timed: mik.TimedPath = mik.time_path(chain, [q, chain.q(np.full(chain.n, 0.4))])
     print(why.value, timed.duration, timed.sample(0.01).v.shape)
+    choice: mik.IKChoice = mik.solve_ik_any(chain, [poses[0], poses[0]])
+    map_: mik.Reachability = mik.reachability(chain, [poses[0].translation], 2)
+    place: mik.BasePlacement = mik.place_base(chain, [poses[0]], budget=mik.Budget(evaluations=20))
     target = mik.Target(poses[0], orientation_tolerance=(1e-5, 1e-5, np.inf))
     budget = mik.Budget(evaluations=2000)
     solver = mik.IKSolver("gwo", mik.DLS(), budget=budget)
@@ -61,6 +64,8 @@ def inverse() -> bool:
     world.add(collision.Obstacle("wall", collision.Box((0.1, 2.0, 2.0)), (-1.0, 0.0, 0.5)))
     free = mik.solve_ik(chain, poses[0], world=world)
     print(len(names), status.name, proof, len(every), len(batch), path.continuous, seeded.success, free.success)
+    move: collision.Move = world.first_contact(q, q)
+    print(choice.index, map_.share, place.pose, move.status, world.clear_between(q, q), path.reasons)
     print(problem, searched.status, mik.REFINERS, world.in_collision(q), world.min_distance(q).distance)
     return result.success
 

@@ -15,10 +15,10 @@ from rich.console import Console
 from pin_metaik.cli.codes import INTERRUPTED
 from pin_metaik.cli.progress import progress_bar
 from pin_metaik.compare import papers
-from pin_metaik.compare.folder.lock import locked
 from pin_metaik.compare.papers import PAPERS, Options, Reproduction
 from pin_metaik.compare.report.show import show
 from pin_metaik.compare.report.write import need_figures, write
+from pin_metaik.folder_lock import locked
 from pin_metaik.interrupts import kept
 from pin_metaik.lookup import lookup
 from pin_metaik.output import writable

@@ -3,7 +3,9 @@
 from pin_metaik.collision.clouds import HeightField, Octree, PointCloud
 from pin_metaik.collision.contact import Contact, Distance
 from pin_metaik.collision.mesh import Mesh, MeshSize
+from pin_metaik.collision.move import Move, MoveStatus
 from pin_metaik.collision.obstacle import Obstacle
+from pin_metaik.collision.picture import draw_world
 from pin_metaik.collision.scene import load_scene, scene_names
 from pin_metaik.collision.shapes import Box, Capsule, Cone, Cylinder, HalfSpace, Plane, Shape, Sphere
 from pin_metaik.collision.world import CollisionWorld
@@ -20,12 +22,15 @@ __all__ = [
     "HeightField",
     "Mesh",
     "MeshSize",
+    "Move",
+    "MoveStatus",
     "Obstacle",
     "Octree",
     "Plane",
     "PointCloud",
     "Shape",
     "Sphere",
+    "draw_world",
     "load_scene",
     "scene_names",
 ]

@@ -35,19 +35,22 @@ BLOCK = 32  # checks between two looks at the clock
 PART = 0.1  # s of checks that a process is given at a time: it ends within that at Ctrl-C
 AHEAD = 3  # parts handed out for each process
 
-Ask: TypeAlias = Callable[["CollisionWorld", NDArray[np.float64]], float]
+Ask: TypeAlias = Callable[["CollisionWorld", NDArray[np.float64]], float | tuple[float, ...]]
 
 
-def answers(world: CollisionWorld, ask: Ask, Q: NDArray[np.float64], workers: int | None) -> NDArray[np.float64]:
-    """The answers (k,) of a world at configurations Q (k, nq), the same for any number of workers.
+def answers(
+    world: CollisionWorld, ask: Ask, Q: NDArray[np.float64], workers: int | None, width: int | None = None
+) -> NDArray[np.float64]:
+    """What a world answers (k,) at configurations Q (k, nq), whatever the number of workers.
 
     Args:
         world: The world.
         ask: A function of a module, so that it can be sent to another process.
         Q: Configurations, valid ones.
         workers: Processes; None: one a core, where it is safe to fork this one.
+        width: How many numbers an answer has, which then is a row (k, width); None: one, and no row.
     """
-    found = np.empty(len(Q))
+    found = np.empty(len(Q) if width is None else (len(Q), width))
     began, done = perf_counter(), 0
     while done < len(Q) and (spent := perf_counter() - began) < TRIAL:
         found[done : done + BLOCK] = [ask(world, q) for q in Q[done : done + BLOCK]]

@@ -60,11 +60,12 @@ class Checker:
 
     def collides(self, q: NDArray[np.float64]) -> bool:
         """Whether anything collides at q (nq,)."""
-        if self.fixed:
-            return True
-        placed = self.solids.place(q)
+        return bool(self.fixed) or self.collides_placed(self.solids.place(q))
+
+    def collides_placed(self, placed: Placed) -> bool:
+        """Whether anything that moves collides where the bodies are placed."""
         for i, j, own in placed.near(self.asked):  # noqa: SIM110  # a generator takes a tenth of a check
-            if self._collide(placed, i, j, own):
+            if self.collide(placed, i, j, own):
                 return True
         return False
 
@@ -89,7 +90,7 @@ class Checker:
         for i, j, own in placed.near(self.asked):
             carriers = self.joint_of(i), self.joint_of(j)
             wanted = joints is None or all(joint in joints for joint in carriers)
-            if wanted and self._collide(placed, i, j, own):
+            if wanted and self.collide(placed, i, j, own):
                 depth = max(0.0, self.margin_of(i, j, own) - self._hulls(placed, i, j).distance)
                 found.append((Contact(self._name(i), self._name(j), depth), carriers))
         return found
@@ -169,7 +170,8 @@ class Checker:
             return c, d, c, d
         return a.first[b.flat], b.first[a.flat], c, d
 
-    def _collide(self, placed: Placed, i: int, j: int, own: int) -> bool:
+    def collide(self, placed: Placed, i: int, j: int, own: int) -> bool:
+        """Whether a pair collides where the bodies are placed."""
         margin = self.margin_of(i, j, own)
         a, b, c, d = self.levels_of(i, j, own)
         if not self.exact or (a is c and b is d):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 from typing import Any, Literal, TypeAlias
 
 import coal
@@ -50,6 +51,16 @@ class Solid:
     def box(self) -> NDArray[np.float64]:
         """(7,) centre, half of the edges and radius of the ball of the box around it, in its frame, m."""
         return box_of(self.hull)
+
+    @property
+    def corners(self) -> NDArray[np.float64]:
+        """(k, 3) points whose convex hull is around it, in its frame, m: the corners of its hull, or of its box."""
+        if isinstance(self.hull, coal.ConvexBase):
+            points: NDArray[np.float64] = np.array(self.hull.points())
+            return points
+        signs = np.array(list(product((-1.0, 1.0), repeat=3)))
+        corners: NDArray[np.float64] = self.box[:3] + signs * self.box[3:6]
+        return corners
 
     @cached_property
     def interior(self) -> Interior:

@@ -174,7 +174,7 @@ class Placed:
 
         self.solids = solids
         self.data, self.shapes = solids.model.createData(), solids.geometry.createData()
-        self.poses = _poses(self.shapes.oMg)
+        self.poses, self.joints = _poses(self.shapes.oMg), _poses(self.data.oMi)
         self.moving = len(self.poses)
         self._turns = [pose[:9].reshape(3, 3).T for pose in self.poses]
         self._shifts = [pose[9:] for pose in self.poses]
@@ -197,8 +197,13 @@ class Placed:
             self._fresh.add(pose)
         return self._at[pose]
 
-    def near(self, pairs: Pairs, beyond: float = 0.0) -> list[list[int]]:
+    def near(self, pairs: Pairs, beyond: float = 0.0, boxes: NDArray[np.float64] | None = None) -> list[list[int]]:
         """The pairs whose boxes are not farther apart than their margin and ``beyond``, m.
+
+        Args:
+            pairs: The pairs.
+            beyond: m.
+            boxes: (m, 8) the boxes of what moves; None: those of the solids, with their paddings.
 
         Returns:
             Numbers of both bodies, and the pair's row in ``pairs.own`` or -1; the likeliest to collide first.
@@ -206,10 +211,11 @@ class Placed:
         solids = self.solids
         own, margins, stood = pairs.own, pairs.margins, solids.stood
         asked = pairs.against, pairs.margin, beyond
-        count = self._near(self.poses, solids.boxes, own, margins, stood, *asked, self._boxes, self._found, self._least)
+        moving = solids.boxes if boxes is None else boxes
+        count = self._near(self.poses, moving, own, margins, stood, *asked, self._boxes, self._found, self._least)
         if count > len(self._found):
             self._found, self._least = np.empty((2 * count, 3), dtype=np.int64), np.empty(2 * count)
-            return self.near(pairs, beyond)
+            return self.near(pairs, beyond, boxes)
         found: list[list[int]] = self._found[:count].tolist() if count else []
         return found
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import get_args
+from typing import TypeAlias, get_args
 
 import numpy as np
 import pinocchio as pin
@@ -18,17 +19,23 @@ from pin_metaik.collision.body import Body, Geometry, geometry_of, robot_bodies
 from pin_metaik.collision.checker import Checker
 from pin_metaik.collision.contact import Contact, Distance
 from pin_metaik.collision.layout import Samples, lay_out, sample
+from pin_metaik.collision.move import Move, MoveStatus
 from pin_metaik.collision.obstacle import Obstacle, placement
 from pin_metaik.collision.padding import Key, Padding, check_padding, entries, names_of, read_padding
 from pin_metaik.collision.pairs import Srdf, disabled_pairs
+from pin_metaik.collision.passage import Found, Passages
 from pin_metaik.collision.shapes import Shape
 from pin_metaik.collision.simplify import Simplify, solid_of
 from pin_metaik.collision.solids import Solids
 from pin_metaik.collision.srdf import Pair, pair_of, write_srdf
 from pin_metaik.errors import InvalidConfiguration, InvalidGeometry, InvalidSetting, UnknownName
 from pin_metaik.kinematics.model import as_configuration, frame_id
-from pin_metaik.optimize.settings import whole
+from pin_metaik.optimize.settings import positive, whole
 from pin_metaik.output import writable
+
+RESOLUTION = 1e-4  # m
+
+AskMove: TypeAlias = Callable[..., float | tuple[float, ...]]
 
 
 @checked
@@ -110,6 +117,7 @@ class CollisionWorld:
         self._others: dict[str, Body] = {}
         self._samples: Samples = {}
         self._checker: Checker | None = None
+        self._passages: Passages | None = None
         given = tuple(obstacles)
         self._take_in([(obstacle, 0, obstacle.pose) for obstacle in given])
         self.obstacles = given
@@ -121,7 +129,7 @@ class CollisionWorld:
 
     def __getstate__(self) -> dict[str, object]:
         """Pickle without the checks, which hold scratch of this process: they are laid out again."""
-        return {**self.__dict__, "_checker": None}
+        return {**self.__dict__, "_checker": None, "_passages": None}
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -324,12 +332,133 @@ class CollisionWorld:
         """
         return self._answers(_nearest, Q, workers)
 
+    def clear_between(self, q0: ArrayLike, q1: ArrayLike, *, resolution: float = RESOLUTION) -> bool:
+        """Whether the straight joint move from q0 to q1 (nq,) is proved free: nothing collides anywhere on the way.
+
+        The move is the one that ``first_contact`` describes. What it calls undecided does not count as free.
+
+        Args:
+            q0: Where the move starts.
+            q1: Where it ends.
+            resolution: m; a move that brings two bodies nearer to their margin than that may count as not free.
+
+        Raises:
+            InvalidConfiguration: If q0 or q1 is not a configuration of the model.
+            InvalidSetting: If the resolution is not above 0.
+            UnsupportedJoint: If a joint of the model is made of several others.
+        """
+        positive("resolution", resolution)
+        ends = as_configuration(self.model, q0), as_configuration(self.model, q1)
+        return _is_clear(self, np.concatenate(ends), resolution)
+
+    def first_contact(self, q0: ArrayLike, q1: ArrayLike, *, resolution: float = RESOLUTION) -> Move:
+        """Where the straight joint move from q0 to q1 (nq,) first collides, or that it is free.
+
+        All joints move at once, each at its own constant speed (``pin.interpolate``). A joint without limits takes the
+        short way round; of two ways that are equally short, the one that ``Move.at`` follows. Joints with limits move
+        straight through their range, those of several freedoms along the shortest twist.
+
+        That a move is free is proved for all of it, not sampled: in the middle of each part of it, bodies are farther
+        apart than their margin and what they can move until its ends, which levers of the joints bound. What is called
+        a collision is a configuration that ``in_collision`` calls one.
+
+        Args:
+            q0: Where the move starts.
+            q1: Where it ends.
+            resolution: m; parts of the move in which bodies that may touch move less are not divided further. A
+                collision is the first one but for such a part before it. A move is undecided where bodies come so near
+                to their margin and no collision was found.
+
+        Raises:
+            InvalidConfiguration: If q0 or q1 is not a configuration of the model.
+            InvalidSetting: If the resolution is not above 0.
+            UnsupportedJoint: If a joint of the model is made of several others.
+        """
+        positive("resolution", resolution)
+        ends = np.concatenate([as_configuration(self.model, q0), as_configuration(self.model, q1)])
+        return self._move(ends, *_first(self, ends, resolution))
+
+    def clear_between_batch(
+        self, Q0: ArrayLike, Q1: ArrayLike, *, resolution: float = RESOLUTION, workers: int | None = None
+    ) -> NDArray[np.bool_]:
+        """Whether each of k moves, from the rows of Q0 (k, nq) to those of Q1, is proved free, (k,).
+
+        Args:
+            Q0: Where the moves start.
+            Q1: Where they end.
+            resolution: As for ``clear_between``.
+            workers: Processes, as for ``in_collision_batch``.
+
+        Raises:
+            InvalidConfiguration: If a row is not a configuration of the model, or one has more rows than the other.
+            InvalidSetting: If ``workers`` is less than one, or the resolution not above 0.
+            UnsupportedJoint: If a joint of the model is made of several others.
+        """
+        return self._moves(_is_clear, Q0, Q1, resolution, workers).astype(bool)
+
+    def first_contact_batch(
+        self, Q0: ArrayLike, Q1: ArrayLike, *, resolution: float = RESOLUTION, workers: int | None = None
+    ) -> tuple[Move, ...]:
+        """Where each of k moves, from the rows of Q0 (k, nq) to those of Q1, first collides.
+
+        Args:
+            Q0: Where the moves start.
+            Q1: Where they end.
+            resolution: As for ``first_contact``.
+            workers: Processes, as for ``in_collision_batch``.
+
+        Raises:
+            InvalidConfiguration: If a row is not a configuration of the model, or one has more rows than the other.
+            InvalidSetting: If ``workers`` is less than one, or the resolution not above 0.
+            UnsupportedJoint: If a joint of the model is made of several others.
+        """
+        found = self._moves(_first, Q0, Q1, resolution, workers, width=2)
+        ends = np.hstack([np.asarray(Q0, dtype=float), np.asarray(Q1, dtype=float)])
+        return tuple(self._move(row, *one) for row, one in zip(ends, found.tolist(), strict=True))
+
+    @property
+    def passages(self) -> Passages:
+        """The search along moves, with the checks as they are laid out now."""
+        if self._passages is None or self._passages.checker is not self.checker:
+            self._passages = Passages(self.checker)
+        return self._passages
+
+    def _move(self, ends: NDArray[np.float64], clear: float, touch: float) -> Move:
+        """What is known of the move between two configurations (2 nq,), by how far it is clear and where it touches."""
+        q0, q1 = np.split(ends, 2)
+        way, nowhere = self.passages.screws.way(q0, q1), np.full(len(q0), math.nan)
+        move = Move(MoveStatus.FREE, clear, touch, nowhere, None, q0.copy(), way, self.model)
+        if not math.isnan(touch):
+            q = move.at(touch)
+            return replace(move, status=MoveStatus.TOUCHES, q=q, contact=self.checker.contacts(q)[0])
+        return move if clear == 1.0 else replace(move, status=MoveStatus.UNDECIDED)
+
+    def _moves(
+        self,
+        ask: AskMove,
+        Q0: ArrayLike,
+        Q1: ArrayLike,
+        resolution: float,
+        workers: int | None,
+        width: int | None = None,
+    ) -> NDArray[np.float64]:
+        positive("resolution", resolution)
+        starts = array("Q0", Q0, "k", self.model.nq, error=InvalidConfiguration)
+        ends = array("Q1", Q1, len(starts), self.model.nq, error=InvalidConfiguration)
+        for q0, q1 in zip(starts, ends, strict=True):
+            self.passages.screws.way(q0, q1)  # what is wrong with one is told before the work
+        return self._shared(partial(ask, resolution=resolution), np.hstack([starts, ends]), workers, width)
+
     def _answers(self, ask: Ask, Q: ArrayLike, workers: int | None) -> NDArray[np.float64]:
+        return self._shared(ask, array("Q", Q, "k", self.model.nq, error=InvalidConfiguration), workers)
+
+    def _shared(
+        self, ask: Ask, rows: NDArray[np.float64], workers: int | None, width: int | None = None
+    ) -> NDArray[np.float64]:
         if workers is not None:
             whole("workers", workers, 1)
-        given = array("Q", Q, "k", self.model.nq, error=InvalidConfiguration)
         self.checker  # noqa: B018  # laid out once, not in every process
-        return answers(self, ask, given, workers)
+        return answers(self, ask, rows, workers, width)
 
     def _take_in(self, new: Sequence[tuple[Obstacle, int, pin.SE3]]) -> None:
         """Take in obstacles, each with the joint that carries it and where it is there: all, or none of them."""
@@ -370,6 +499,16 @@ class CollisionWorld:
 
 def _collides(world: CollisionWorld, q: NDArray[np.float64]) -> float:
     return world.checker.collides(q)
+
+
+def _is_clear(world: CollisionWorld, ends: NDArray[np.float64], resolution: float) -> bool:
+    q0, q1 = np.split(ends, 2)
+    return world.passages.free(q0, world.passages.screws.way(q0, q1), resolution)
+
+
+def _first(world: CollisionWorld, ends: NDArray[np.float64], resolution: float) -> Found:
+    q0, q1 = np.split(ends, 2)
+    return world.passages.first(q0, world.passages.screws.way(q0, q1), resolution)
 
 
 def _nearest(world: CollisionWorld, q: NDArray[np.float64]) -> float:

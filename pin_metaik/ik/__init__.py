@@ -1,7 +1,9 @@
 """Inverse kinematics: targets, problems, solvers, refiners and results."""
 
 from pin_metaik.ik import goals
+from pin_metaik.ik.any import IKChoice, solve_ik_any
 from pin_metaik.ik.batch import IKBatch, solve_ik_batch
+from pin_metaik.ik.breaks import BreakReason, PathBreak
 from pin_metaik.ik.goals.pose import Target
 from pin_metaik.ik.path import IKPath, solve_ik_path
 from pin_metaik.ik.picture import draw_arm, save_arm
@@ -16,13 +18,16 @@ from pin_metaik.ik.solver import IKSolver
 __all__ = [
     "DLS",
     "REFINERS",
+    "BreakReason",
     "IKBatch",
+    "IKChoice",
     "IKPath",
     "IKProblem",
     "IKResult",
     "IKSolutions",
     "IKSolver",
     "IKStatus",
+    "PathBreak",
     "Proof",
     "Refinement",
     "Refiner",
@@ -33,6 +38,7 @@ __all__ = [
     "save_arm",
     "solve_ik",
     "solve_ik_all",
+    "solve_ik_any",
     "solve_ik_batch",
     "solve_ik_path",
 ]

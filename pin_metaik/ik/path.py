@@ -1,38 +1,34 @@
-"""A sequence of poses with bounded joint steps, or the places where there is none.
+"""A sequence of poses with bounded joint steps, or the places where there is none, and why.
 
-Every pose gets a layer of solutions: those followed from the layer before it and after it, and some found afresh. The
-best way through the layers is found by dynamic programming: the fewest breaks first, then the shortest way.
+Every pose gets a layer of solutions, and the best way through the layers is found. Where that has breaks, layers of
+poses that leave a choice are widened first: to other targets within their tolerances, and along self-motions.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import array, checked, shown
+from pin_metaik.arguments import array, checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidSetting, InvalidTarget
-from pin_metaik.ik.goals.pose import TargetLike
-from pin_metaik.ik.problem import IKProblem
-from pin_metaik.ik.proof import Proof
-from pin_metaik.ik.solver import DEFAULT_SOLVER
-from pin_metaik.ik.starts import drawn
+from pin_metaik.ik.breaks import BreakReason, PathBreak
+from pin_metaik.ik.layers import Layers
+from pin_metaik.ik.problem import Asked, IKProblem
+from pin_metaik.ik.solver import IKSolver
+from pin_metaik.ik.ways import Way, Ways
 from pin_metaik.kinematics import Chain
 from pin_metaik.plain import fields_of
+from pin_metaik.planning import installed, plan_joint_move
 from pin_metaik.randomness import Rng
 from pin_metaik.timing import TimedPath, time_path
 from pin_metaik.timing.limits import Share
-from pin_metaik.watching import Progress, Stopped, Watch, tell
-
-WIDEST = 48  # solutions in a layer
-FRESH = 24  # starts from the atlas and as many random ones for a layer of its own
-APART = 1e-2  # rad or m between solutions of one layer
-EVALUATIONS = 10_000  # for one layer, each way
+from pin_metaik.watching import Stopped, Watch
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,11 +38,15 @@ class IKPath:
     Attributes:
         q: (k, nq) configurations; angles run on through whole turns where limits allow.
         success: (k,) whether each pose is met, by Pinocchio.
-        breaks: Numbers i of the poses that cannot be reached from pose i - 1 within the step bound.
+        breaks: Numbers i of the poses that cannot be reached from pose i - 1: not within the step bound, or in a world
+            not by a straight joint move that is proved free of collisions.
         longest_step: Largest step of any joint between poses without a break, rad or m.
         seconds: Time taken, s.
         chain: The chain.
         interrupted: Whether a watch ended it before every pose was looked at.
+        reasons: Why each pose that is not met is not, and each break: see ``PathBreak``.
+        moves: For breaks, if ``reconfigure`` asked for it and one was found: a joint move (p, nq) from pose i - 1 to
+            pose i, by i. Its straight parts keep inside the limits and are proved free in the world.
     """
 
     q: NDArray[np.float64]
@@ -56,6 +56,8 @@ class IKPath:
     seconds: float
     chain: Chain = field(repr=False)
     interrupted: bool = False
+    reasons: tuple[PathBreak, ...] = ()
+    moves: dict[int, NDArray[np.float64]] = field(default_factory=dict, repr=False)
 
     @property
     def continuous(self) -> bool:
@@ -66,9 +68,20 @@ class IKPath:
         """Whether it is continuous."""
         return self.continuous
 
+    @property
+    def passable(self) -> bool:
+        """Whether every pose is met, and a joint move leads across every break."""
+        return bool(self.success.all()) and set(self.breaks) <= self.moves.keys()
+
+    @property
+    def why(self) -> str:
+        """What is wrong, in words, one line for each pose or break; empty for a continuous path."""
+        return "\n".join(map(str, self.reasons))
+
     def as_dict(self) -> dict[str, Any]:
         """Plain values, for JSON: lengths in m, angles in rad."""
-        return fields_of(self, "q", "success", "continuous", "breaks", "longest_step", "interrupted", "seconds")
+        names = ("q", "success", "continuous", "passable", "breaks", "longest_step", "interrupted", "seconds", "moves")
+        return {**fields_of(self, *names), "reasons": [reason.as_dict() for reason in self.reasons]}
 
     @property
     def x(self) -> NDArray[np.float64]:
@@ -102,15 +115,20 @@ class IKPath:
 @checked
 def solve_ik_path(
     chain: Chain,
-    targets: Sequence[TargetLike] | NDArray[np.float64],
+    targets: Sequence[Asked] | NDArray[np.float64],
     q0: ArrayLike | None = None,
     *,
     max_step: float | ArrayLike = 0.2,
+    solver: IKSolver | None = None,
     world: CollisionWorld | None = None,
+    reconfigure: bool = False,
     rng: Rng = None,
     watch: Watch | None = None,
 ) -> IKPath:
-    """Follow a sequence of poses without jumps.
+    """Follow a sequence of poses without jumps, in a world without collisions at the poses and between them.
+
+    The middle of tolerances is aimed at. Only if the path would break, other targets within them are tried, and
+    solutions along the self-motions of a chain with more joints than the targets need.
 
     Args:
         chain: The joints to move and the frame to place.
@@ -118,12 +136,19 @@ def solve_ik_path(
         q0: (nq,) configuration the path should start near, with the joints outside the chain and the locked ones where
             they stay; default: wherever the path as a whole is best, from the chain's reference.
         max_step: Largest step of a joint from one pose to the next, rad or m: one number, or (n,) one a joint.
-        world: What must not collide at any of the poses; the steps between them are not looked at.
+        solver: Its refiner finds the solutions of each pose, with its budget of evaluations for one pose; where that
+            finds none, the solver searches for one. What it selects does not count: the way through all poses does.
+            Default: damped least squares, 10,000 evaluations a pose.
+        world: What must not collide at any of the poses and on the straight joint moves between them, which is proved
+            (``CollisionWorld.clear_between``).
+        reconfigure: Whether to look, where the path breaks, for a joint move to the next pose: a straight one if that
+            is free, else, if OMPL is installed, a planned one. The path holds them as ``moves``.
         rng: Seed or generator; ``None`` is a fixed seed.
         watch: Called with poses done and in all; True ends the path: the poses that follow are not met.
 
     Returns:
-        The path. Where it is not continuous, ``breaks`` and ``success`` say where: nothing jumps silently.
+        The path. Where it is not continuous, ``breaks`` and ``success`` say where, ``reasons`` why: nothing jumps
+        silently.
 
     Raises:
         InvalidTarget: If there are no targets, or one of them is none.
@@ -131,8 +156,6 @@ def solve_ik_path(
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
     """
     began = perf_counter()
-    if isinstance(targets, str) or not (isinstance(targets, Sequence) or np.ndim(targets)):
-        raise InvalidTarget(f"targets are a list of poses or positions, got {shown(targets)}")
     if len(targets) == 0:
         raise InvalidTarget("a path has at least one target")
     given = array("max_step", max_step, "...", finite=False)
@@ -142,126 +165,83 @@ def solve_ik_path(
     chain = chain if q0 is None else chain.at(q0)
     base = chain.reference if q0 is None else chain.configuration(q0)
     problems = [IKProblem.of(chain, target, world) for target in targets]
-    layers: list[NDArray[np.float64]] = []
+    layers = Layers(problems, base, bound, solver, rng)
+    x0 = None if q0 is None else chain.x(base)
     interrupted = False
+    ways = Ways(chain, layers.found, bound, x0, base, world, reconfigure)
+    way = Way({}, (), ())
     try:
-        _add_layers(layers, problems, base, q0 is not None, rng, watch)
+        layers.fill(q0 is not None, watch)
+        way = ways.best()
+        if (way.breaks or len(way.rows) < len(problems)) and layers.flexible:
+            layers.widen(way.breaks, watch)
+            way = min(way, replace(ways).best(), key=lambda one: (-len(one.rows), len(one.breaks)))
     except Stopped:
-        layers += [np.empty((0, chain.n))] * (len(problems) - len(layers))
         interrupted = True
-    x, breaks = _best_way(chain, layers, bound, None if q0 is None else chain.x(base))
+        way = way if way.rows else ways.best()
+    x = _coordinates(chain, layers.found, way, x0)
     q = chain.q(x, base)
     success = np.array([problem.accepts(one) for problem, one in zip(problems, q, strict=True)])
-    steps = np.abs(chain.limits.way(x[:-1], x[1:])).max(axis=1, initial=0.0)
-    steps[[i - 1 for i in breaks]] = 0.0
-    return IKPath(q, success, tuple(breaks), float(steps.max(initial=0.0)), perf_counter() - began, chain, interrupted)
+    steps = chain.limits.way(x[:-1], x[1:])  # (k - 1, n)
+    reasons = tuple(_reasons(layers, way, success, steps, q, interrupted))
+    moves = _moves(chain, way, q, world, rng) if reconfigure else {}
+    steps[[i - 1 for i in way.breaks]] = 0.0
+    longest = float(np.abs(steps).max(initial=0.0))
+    return IKPath(q, success, way.breaks, longest, perf_counter() - began, chain, interrupted, reasons, moves)
 
 
-def _add_layers(
-    layers: list[NDArray[np.float64]],
-    problems: list[IKProblem],
-    base: NDArray[np.float64],
-    near: bool,
-    rng: Rng,
-    watch: Watch | None,
-) -> None:
-    """Add solutions (s, n) of every pose, the joints off the chain being as in base (nq,); empty where none was found.
-
-    Raises:
-        Stopped: The watch says so; the layers are those so far.
-    """
-    x0 = problems[0].chain.x(base)
-    followed = x0[None] if near else np.empty((0, len(x0)))
-    for index, problem in enumerate(problems):
-        if index:
-            tell(watch, Progress(index, len(problems)))
-        if problem.refuted not in (None, Proof.LIMITS):
-            layers.append(np.empty((0, len(x0))))
-            continue
-        fresh = problem.branches(followed[0] if len(followed) else x0)
-        if not len(fresh):
-            fresh = np.concatenate([problem.near(FRESH), drawn(problem.chain, rng, index, FRESH)])
-        layer = _widened(problem, base, np.empty((0, len(x0))), followed, followed=True)
-        layer = _widened(problem, base, layer, fresh)
-        if not len(layer):  # nothing in the middle of the tolerances
-            layer = _widened(problem.whole, base, _widened(problem.whole, base, layer, followed, followed=True), fresh)
-        layers.append(layer)
-        followed = layer if len(layer) else followed
-    for i in range(len(problems) - 2, -1, -1):  # what only a later pose found may have begun earlier
-        layers[i] = _widened(problems[i], base, layers[i], layers[i + 1], followed=True)
-    if watch is not None:
-        watch(Progress(len(problems), len(problems)))  # there is nothing left to end
-
-
-def _widened(
-    problem: IKProblem,
-    base: NDArray[np.float64],
-    layer: NDArray[np.float64],
-    starts: NDArray[np.float64],
-    followed: bool = False,
+def _coordinates(
+    chain: Chain, layers: list[NDArray[np.float64]], way: Way, x0: NDArray[np.float64] | None
 ) -> NDArray[np.float64]:
-    """A layer with the solutions that these starts lead to; those found afresh must leave room for followed ones.
-
-    In a world only what is free of collisions is added.
-    """
-    room = WIDEST if followed else WIDEST // 2
-    if len(layer) >= room or not len(starts):
-        return layer
-    found = np.empty((room, problem.chain.n))
-    found[: len(layer)] = layer
-    gather = DEFAULT_SOLVER.descent.gather
-    _, known, _ = gather(problem, starts, found, len(layer), APART, len(starts) + 1, EVALUATIONS, branch=False)
-    if problem.world is not None:
-        clear = [problem.accepts(q) for q in problem.chain.q(found[len(layer) : known], base)]
-        return np.concatenate([layer, found[len(layer) : known][clear]])
-    return found[:known]
-
-
-def _best_way(
-    chain: Chain, layers: list[NDArray[np.float64]], bound: NDArray[np.float64], x0: NDArray[np.float64] | None
-) -> tuple[NDArray[np.float64], list[int]]:
-    """Coordinates (k, n) with the fewest breaks, then the shortest way, and the poses that a break comes before.
-
-    A pose without a solution keeps the joints where the pose before it had them.
-    """
-    jump = 1e6  # more than any path costs
-    here = layers[0]
-    costs = np.zeros(len(here)) if x0 is None else np.linalg.norm(chain.limits.way(x0, here), axis=1)
-    trail: list[tuple[int, NDArray[np.int64]]] = [(0, np.zeros(0, np.int64))] if len(here) else []
-    for i in range(1, len(layers)):
-        if not len(layers[i]):
-            continue
-        if not len(here):
-            here, costs = layers[i], np.zeros(len(layers[i]))
-            trail.append((i, np.zeros(0, np.int64)))
-            continue
-        step = chain.limits.way(here[:, None], layers[i][None])  # (a, b, n)
-        broken = (np.abs(step) > bound).any(axis=2)
-        total = costs[:, None] + np.linalg.norm(step, axis=2) + jump * broken
-        before = total.argmin(axis=0)
-        here, costs = layers[i], total[before, np.arange(len(layers[i]))]
-        trail.append((i, before))
-    return _traced(chain, layers, bound, trail, costs, x0)
-
-
-def _traced(
-    chain: Chain,
-    layers: list[NDArray[np.float64]],
-    bound: NDArray[np.float64],
-    trail: list[tuple[int, NDArray[np.int64]]],
-    costs: NDArray[np.float64],
-    x0: NDArray[np.float64] | None,
-) -> tuple[NDArray[np.float64], list[int]]:
-    """The way back from the cheapest end."""
+    """Coordinates (k, n) along a way; a pose without a solution keeps the joints where the pose before it had them."""
     x = np.empty((len(layers), chain.n))
-    solved = {}
-    at = int(costs.argmin()) if trail else 0
-    for i, before in reversed(trail):
-        solved[i] = layers[i][at]
-        at = int(before[at]) if len(before) else 0
     last = chain.limits.clip(chain.x(chain.reference)) if x0 is None else x0
-    last = solved[min(solved)] if solved else last
-    for i in range(len(layers)):
-        last = x[i] = solved.get(i, last)
-    steps = chain.limits.way(x[:-1], x[1:])
-    return x, [int(i) + 1 for i in np.flatnonzero((np.abs(steps) > bound).any(axis=1))]
+    last = layers[min(way.rows)][way.rows[min(way.rows)]] if way.rows else last
+    for i, layer in enumerate(layers):
+        last = x[i] = layer[way.rows[i]] if i in way.rows else last
+    return x
+
+
+def _reasons(
+    layers: Layers,
+    way: Way,
+    success: NDArray[np.bool_],
+    steps: NDArray[np.float64],
+    q: NDArray[np.float64],
+    interrupted: bool,
+) -> Iterator[PathBreak]:
+    """Why poses are not met, and why there are breaks, in their order."""
+    world, base = layers.problems[0].world, layers.base
+    for i, problem in enumerate(layers.problems):
+        if not success[i]:
+            proof = problem.refuted
+            if i in layers.colliding and world is not None:
+                deepest = world.checker.contacts(problem.chain.q(layers.colliding[i], base))[0]
+                yield PathBreak(i, BreakReason.IN_COLLISION, contact=deepest)
+            elif interrupted and proof is None:
+                yield PathBreak(i, BreakReason.INTERRUPTED)
+            else:
+                yield PathBreak(i, BreakReason.NO_SOLUTION, proof=proof)
+        elif i in way.breaks:
+            over = np.abs(steps[i - 1]) / layers.bound
+            worst = int(over.argmax())
+            move = None if world is None else world.first_contact(q[i - 1], q[i])
+            contact = None if move is None else move.contact
+            if over[worst] > 1.0:
+                name, step = problem.chain.names[worst], float(np.abs(steps[i - 1, worst]))
+                yield PathBreak(i, BreakReason.STEP, contact=contact, joint=name, step=step, move=move)
+            else:
+                yield PathBreak(i, BreakReason.MOVE, contact=contact, move=move)
+
+
+def _moves(
+    chain: Chain, way: Way, q: NDArray[np.float64], world: CollisionWorld | None, rng: Rng
+) -> dict[int, NDArray[np.float64]]:
+    """Joint moves (p, nq) across the breaks of a way: straight ones where these are free."""
+    found = {i: q[i - 1 : i + 1].copy() for i in way.breaks if i not in way.barred}
+    if way.barred and world is not None and installed():
+        for i in way.barred:
+            planned = plan_joint_move(chain, world, q[i - 1], q[i], rng=rng)
+            if planned.success:
+                found[i] = planned.q
+    return dict(sorted(found.items()))

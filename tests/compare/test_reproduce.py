@@ -6,10 +6,10 @@ import pytest
 from typer.testing import CliRunner
 
 from pin_metaik import cli
-from pin_metaik.compare.folder.lock import locked
 from pin_metaik.compare.papers import aerial_arm
 from pin_metaik.compare.papers.arm import ArmTrial
 from pin_metaik.errors import CannotWrite, InvalidSetting
+from pin_metaik.folder_lock import locked
 
 
 def command(*words):

@@ -260,7 +260,7 @@ def test_a_dask_cluster_gives_the_same_rows(whole: Path, tmp_path: Path, schedul
 
 def test_a_cluster_that_does_not_answer_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr("pin_metaik.compare.trials.workers.CONNECTING", 0.5)
+    monkeypatch.setattr("pin_metaik.workers.CONNECTING", 0.5)
     for scheduler, complaint in ((None, "--scheduler ADDRESS"), ("tcp://127.0.0.1:9", "no Dask scheduler answers")):
         with pytest.raises(InvalidSetting, match=complaint):
             compare(SMALL, tmp_path / "out", backend="dask", scheduler=scheduler)
@@ -291,7 +291,7 @@ def test_where_no_arm_has_any_of_the_cases_that_is_said_before_the_work(tmp_path
 
 
 def test_a_second_process_is_refused_and_a_killed_one_leaves_no_lock(tmp_path: Path) -> None:
-    holder = "import sys, time; from pathlib import Path; from pin_metaik.compare.folder.lock import locked\n"
+    holder = "import sys, time; from pathlib import Path; from pin_metaik.folder_lock import locked\n"
     holder += f"with locked(Path({str(tmp_path)!r}), 'comparison'): print('held', flush=True); time.sleep(3600)"
     with subprocess.Popen([sys.executable, "-c", holder], env=ENVIRONMENT, stdout=subprocess.PIPE) as running:
         try:

@@ -11,7 +11,6 @@ from typing import Any
 from pin_metaik.arguments import checked
 from pin_metaik.compare.cases.case import NoTask
 from pin_metaik.compare.folder.environment import append_environment
-from pin_metaik.compare.folder.lock import locked
 from pin_metaik.compare.folder.manifest import Manifest
 from pin_metaik.compare.folder.robot_files import copy_robots
 from pin_metaik.compare.folder.store import (
@@ -24,15 +23,13 @@ from pin_metaik.compare.folder.store import (
     write_parquet,
 )
 from pin_metaik.compare.trials.suite import Suite
-from pin_metaik.compare.trials.workers import Backend, need_joblib, worked
-from pin_metaik.errors import InvalidSetting
+from pin_metaik.folder_lock import locked
 from pin_metaik.interrupts import Pressed
 from pin_metaik.optimize.settings import one_of
 from pin_metaik.output import writable
 from pin_metaik.plain import fields_of
 from pin_metaik.watching import Progress, Watch, ended, tell
-
-MOST_JOBS = 10_000
+from pin_metaik.workers import Backend, check_jobs, need_joblib, worked
 
 
 @dataclass(frozen=True)
@@ -111,11 +108,10 @@ def compare(
         Interrupted: Ctrl-C; its ``result`` is the outcome so far, and the same call goes on from there.
     """
     need_parquet()
-    if jobs == 0 or abs(jobs) > MOST_JOBS:
-        raise InvalidSetting(f"jobs is a number of processes, 1 to {MOST_JOBS:,}, or -1: one a core; got {jobs}")
+    check_jobs(jobs)
     one_of("backend", backend, Backend)
     writable(folder, folder=True)
-    need_joblib()
+    need_joblib("comparing methods")
     began = perf_counter()
     absent = suite.absent()
     if len(absent) == len(suite.robots_by_name) * len(suite.cases_by_name):

@@ -5,36 +5,60 @@ from __future__ import annotations
 import contextlib
 import threading
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from multiprocessing import resource_tracker
 from multiprocessing.util import Finalize
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, Protocol, TypeAlias, TypeVar
 
-from pin_metaik.compare.trials.trial import Trial
-from pin_metaik.compare.trials.work_item import WorkItem
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import Pressed, deaf_children
 from pin_metaik.lookup import need
 
+T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
 Backend: TypeAlias = Literal["loky", "dask"]
 
 CONNECTING = 10.0  # s
 ENDING = 5.0  # s
+MOST_JOBS = 10_000
 LOKYS_THREAD = "ExecutorManagerThread"
 LOKYS_FEEDER = "QueueFeederThread"
 
 
-def need_joblib() -> None:
-    """Make sure that tasks can be handed to workers.
+class WorkItem(Protocol[T_co]):
+    """A part of the work, which can be sent to another process."""
+
+    def run(self) -> T_co:
+        """Do it."""
+        ...
+
+
+def need_joblib(feature: str) -> None:
+    """Make sure that work can be handed to workers.
 
     Raises:
         MissingExtra: joblib is not installed.
     """
-    need("comparing methods", "compare", "joblib")
+    need(feature, "compare", "joblib")
 
 
-def worked(items: list[WorkItem], jobs: int, backend: Backend, scheduler: str | None) -> Iterator[list[Trial]]:
-    """The rows of work items, in the order in which they are finished."""
+def check_jobs(jobs: int) -> None:
+    """Make sure that a number of processes is one.
+
+    Raises:
+        InvalidSetting: It is not.
+    """
+    if jobs == 0 or abs(jobs) > MOST_JOBS:
+        raise InvalidSetting(f"jobs is a number of processes, 1 to {MOST_JOBS:,}, or -1: one a core; got {jobs}")
+
+
+def worked(items: Sequence[WorkItem[T]], jobs: int, backend: Backend, scheduler: str | None) -> Iterator[T]:
+    """The results of work items, in the order in which they are finished.
+
+    Raises:
+        MissingExtra: joblib or distributed is not installed.
+        InvalidSetting: The scheduler cannot be reached.
+    """
     with contextlib.ExitStack() as stack:
         chosen: dict[str, Any] = {"backend": backend, "n_jobs": jobs}
         if backend == "dask":
@@ -42,21 +66,21 @@ def worked(items: list[WorkItem], jobs: int, backend: Backend, scheduler: str | 
         stack.enter_context(_no_last_words())
         others = set(threading.enumerate())
         with Pressed(held=True) as pressed:  # or it might come in a callback of weak references, which swallows it
-            rows = _begun(items, chosen)
+            results = _begun(items, chosen)
         try:
             pressed.check()
-            for trials in rows:  # noqa: UP028  # `yield from` would close them before the lines below
-                yield trials
+            for result in results:  # noqa: UP028  # `yield from` would close them before the lines below
+                yield result
         except BaseException:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # joblib's, of tasks that an interrupt leaves undone
-                rows.close()
+                results.close()
             _await_feeders(others)
             raise
 
 
-def _begun(items: list[WorkItem], chosen: dict[str, Any]) -> Any:
-    """The generator of rows, its processes begun; they do not hear Ctrl-C."""
+def _begun(items: Sequence[WorkItem[Any]], chosen: dict[str, Any]) -> Any:
+    """The generator of results, its processes begun; they do not hear Ctrl-C."""
     from joblib import Parallel, delayed, parallel_config
     from joblib.externals.loky.backend import resource_tracker as lokys_tracker
 
@@ -64,7 +88,11 @@ def _begun(items: list[WorkItem], chosen: dict[str, Any]) -> Any:
         tracker.ensure_running()
     with parallel_config(**chosen), deaf_children():
         parallel = Parallel(return_as="generator_unordered", pre_dispatch="3*n_jobs")
-        return parallel(delayed(WorkItem.run)(item) for item in items)
+        return parallel(delayed(_run)(item) for item in items)
+
+
+def _run(item: WorkItem[T]) -> T:
+    return item.run()
 
 
 @contextlib.contextmanager

@@ -1,0 +1,203 @@
+"""The solutions of every pose of a path: those followed from the pose before and after it, and some found afresh."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Collection
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from pin_metaik.ik.goals.pose import DEFAULT_TOLERANCE, FREE, Tolerance
+from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.proof import Proof
+from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
+from pin_metaik.ik.starts import drawn
+from pin_metaik.randomness import Rng
+from pin_metaik.watching import Progress, Watch, tell
+
+WIDEST, MOST = 48, 72  # solutions in a layer, and in one that is widened
+AROUND = 64  # poses before and after a break whose layers are widened
+FRESH = 24  # starts from the atlas and as many random ones for a layer of its own
+APART = 1e-2  # rad or m between solutions of one layer
+EVALUATIONS = 10_000  # for one layer, each way, if no solver says otherwise
+INSIDE = 0.9  # of a tolerance: how far off the middle other targets within it are
+CORNERS = 9  # targets in the tolerances of one, at most
+DRIFT = 0.5  # of the longest step of a joint: how far a redundant chain is moved among the solutions of one pose
+TINY = 1e-12  # of a unit vector: what counts as not moving a joint
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Layers:
+    """Solutions of k poses.
+
+    Attributes:
+        problems: What each pose asks for.
+        base: (nq,) where the joints that the chain does not move are.
+        bound: (n,) the longest step of each joint between two poses, rad or m.
+        solver: How solutions are found; None: by damped least squares.
+        rng: Seed or generator of the starts.
+        found: Solutions (s, n) of each pose; none where none was found, in a world none that is free.
+        colliding: One solution (n,) in collision of poses that have no free one, by their number.
+    """
+
+    problems: list[IKProblem]
+    base: Floats
+    bound: Floats
+    solver: IKSolver | None
+    rng: Rng
+    found: list[Floats] = field(init=False, default_factory=list)
+    colliding: dict[int, Floats] = field(init=False, default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Every layer is empty until it is filled."""
+        self.found[:] = [self._none for _ in self.problems]
+
+    def fill(self, near: bool, watch: Watch | None) -> None:
+        """Find solutions of every pose; ``near``: followed from where the base has the chain.
+
+        Raises:
+            Stopped: The watch says so; the layers are those so far.
+        """
+        x0 = self.problems[0].chain.x(self.base)
+        followed = x0[None] if near else self._none
+        for i, problem in enumerate(self.problems):
+            if i:
+                tell(watch, Progress(i, len(self.problems)))
+            if problem.refuted not in (None, Proof.LIMITS):
+                continue
+            fresh = problem.branches(followed[0] if len(followed) else x0)
+            if not len(fresh):
+                fresh = np.concatenate([problem.near(FRESH), drawn(problem.chain, self.rng, i, FRESH)])
+            self._add(i, problem, followed, WIDEST)
+            self._add(i, problem, fresh, WIDEST // 2)
+            if not len(self.found[i]):  # nothing in the middle of the tolerances
+                self._add(i, problem.whole, followed, WIDEST)
+                self._add(i, problem.whole, fresh, WIDEST // 2)
+            if not len(self.found[i]) and self.solver is not None:
+                self._solve(i, self.solver, followed[0] if len(followed) else x0)
+            followed = self.found[i] if len(self.found[i]) else followed
+        for i in range(len(self.problems) - 2, -1, -1):  # what only a later pose found may have begun earlier
+            self._add(i, self.problems[i], self.found[i + 1], WIDEST)
+        if watch is not None:
+            watch(Progress(len(self.problems), len(self.problems)))  # there is nothing left to end
+
+    @property
+    def flexible(self) -> bool:
+        """Whether any pose leaves a choice: tolerances that are not small, or more joints than it needs."""
+        return any(problem.loose or problem.chain.n > problem.m for problem in self.problems)
+
+    def widen(self, breaks: Collection[int], watch: Watch | None) -> None:
+        """Find more solutions where poses leave a choice: off the middle of tolerances, and along self-motions.
+
+        Args:
+            breaks: Poses that are not reached from the one before; these and poses without a solution, and some before
+                and after them, get more solutions.
+            watch: Called with poses done and in all.
+
+        Raises:
+            Stopped: The watch says so; the layers are those so far.
+        """
+        open_ones = np.array([problem.refuted in (None, Proof.LIMITS) for problem in self.problems])
+        wanted = np.array([not len(layer) for layer in self.found]) & open_ones
+        wanted[list(breaks)] = True
+        near = np.convolve(wanted, np.ones(2 * AROUND + 1), "same") > 0.5
+        chosen = np.flatnonzero(near[: len(wanted)] & open_ones).tolist()
+        for done, i in enumerate(chosen):
+            tell(watch, Progress(done, len(chosen), label="within the tolerances"))
+            problem, before = self.problems[i], self.found[i - 1] if i else self._none
+            self._add(i, problem.whole, before, WIDEST)
+            starts = np.concatenate([before, self._drifted(i)])
+            for aim in self._aims(problem):
+                self._add(i, aim, starts if len(starts) else problem.near(FRESH), MOST)
+        for i in reversed(chosen):
+            if i + 1 < len(self.problems):
+                self._add(i, self.problems[i].whole, self.found[i + 1], MOST)
+
+    @property
+    def _none(self) -> Floats:
+        return np.empty((0, self.problems[0].chain.n))
+
+    def _drifted(self, i: int) -> Floats:
+        """The solutions of a pose moved a little along their self-motions, each way; they need not be solutions."""
+        problem, X = self.problems[i], self.found[i]
+        spare = problem.chain.n - problem.m
+        if spare <= 0 or not len(X):
+            return self._none
+        J = np.array([problem.linearize(x)[1].T for x in X])  # (s, m, n)
+        free = np.linalg.svd(J)[2][:, -spare:]  # (s, n - m, n)
+        steps = free * (DRIFT * self.bound / np.maximum(np.abs(free), TINY)).min(axis=2, keepdims=True)
+        moved = np.concatenate([X[:, None] + steps, X[:, None] - steps])
+        return problem.limits.clip(moved.reshape(-1, problem.chain.n))
+
+    def _aims(self, problem: IKProblem) -> list[IKProblem]:
+        """The problem itself, and ones that aim at other targets within its tolerances."""
+        if not problem.loose or len(problem.targets) > 1:
+            return [problem]
+        target = problem.targets[0]
+        shifts, turns = (_corners(t) for t in (target.position_tolerance, target.orientation_tolerance))
+        offsets = list(itertools.product(shifts, turns))[1 : CORNERS + 1]
+        aims = [problem]
+        for shift, turn in offsets:
+            pose = target.pose * pin.SE3(pin.exp3(turn), shift)
+            aim = replace(
+                target,
+                pose=pose,
+                position_tolerance=_tight(target.position_tolerance),
+                orientation_tolerance=_tight(target.orientation_tolerance),
+            )
+            aims.append(IKProblem.of(problem.chain, [aim, *problem.goals.each], problem.world))
+        return aims
+
+    def _add(self, i: int, aim: IKProblem, starts: Floats, room: int) -> None:
+        """Add the solutions that these starts (s, n) lead to, if they are new, accepted, and there is room."""
+        layer = self.found[i]
+        if len(layer) >= room or not len(starts):
+            return
+        found = np.empty((room, aim.chain.n))
+        found[: len(layer)] = layer
+        new = found[len(layer) : self._gather(aim, starts, found, len(layer))]
+        problem = self.problems[i]
+        if problem.world is not None or aim is not problem:
+            verdicts = [problem.verdict(q) for q in problem.chain.q(new, self.base)]
+            touching = [x for x, verdict in zip(new, verdicts, strict=True) if verdict.collides]
+            if touching and not len(layer):
+                self.colliding.setdefault(i, touching[0])
+            new = new[[verdict.accepted for verdict in verdicts]]
+        if len(new):
+            self.found[i] = np.concatenate([layer, new])
+            self.colliding.pop(i, None)
+
+    def _gather(self, aim: IKProblem, starts: Floats, found: Floats, known: int) -> int:
+        """Write new solutions behind the ``known`` ones in ``found``; how many there are then."""
+        solver = DEFAULT_SOLVER if self.solver is None else self.solver
+        most = EVALUATIONS if self.solver is None else self.solver.budget.evaluations or EVALUATIONS
+        _, taken, _ = solver.descent.gather(aim, starts, found, known, APART, len(starts) + 1, most, branch=False)
+        return taken
+
+    def _solve(self, i: int, solver: IKSolver, x: Floats) -> None:
+        """Let the solver search for a pose that descents have not met."""
+        problem = self.problems[i]
+        result = solver.solve(problem, problem.chain.q(x, self.base), self.rng)
+        if result.success:
+            self.found[i] = result.x[None]
+
+
+def _corners(tolerance: Tolerance) -> list[Floats]:
+    """Offsets (3,) to a middle, m or rad: none, then each way along the axes that have a tolerance."""
+    each = tolerance if isinstance(tolerance, tuple) else (tolerance,) * 3
+    sizes = np.array([INSIDE * t if DEFAULT_TOLERANCE < t < FREE else 0.0 for t in each])
+    ways = [sign * np.where(np.arange(3) == k, sizes, 0.0) for k in np.flatnonzero(sizes) for sign in (1.0, -1.0)]
+    return [np.zeros(3), *ways]
+
+
+def _tight(tolerance: Tolerance) -> Tolerance:
+    """The same tolerance with the default one where it is larger and not free."""
+    if isinstance(tolerance, tuple):
+        x, y, z = (t if t == FREE else min(t, DEFAULT_TOLERANCE) for t in tolerance)
+        return x, y, z
+    return tolerance if tolerance == FREE else min(tolerance, DEFAULT_TOLERANCE)
