@@ -15,7 +15,7 @@ import numpy as np
 import pinocchio as pin
 
 import pin_metaik as mik
-from pin_metaik import collision, compare, kinematics, learn, mobile, optimize, robots, stewart
+from pin_metaik import collision, compare, kinematics, learn, mobile, optimize, robots, stewart, timing
 from pin_metaik.ik import refine
 from pin_metaik.mobile.motion.trajectory import Phase
 
@@ -32,6 +32,7 @@ MODULES = {
     "stewart": stewart,
     "mobile": mobile,
     "compare": compare,
+    "timing": timing,
 }
 REGISTRIES: dict[str, Mapping[str, Any]] = {
     "ALGORITHMS": optimize.ALGORITHMS,
@@ -80,6 +81,11 @@ def placed() -> mik.goals.Placed:
 @cache
 def table() -> robots.DHTable:
     return robots.DHTable("arm", "standard", (robots.DHRow(a=1.0), robots.DHRow(a=1.0)))
+
+
+@cache
+def timed() -> mik.TimedPath:
+    return mik.time_path(arm(), np.array([[0.0, 0.0], [0.3, 0.5], [1.0, 0.2]]))
 
 
 def world() -> mik.CollisionWorld:
@@ -312,7 +318,10 @@ OWNERS: dict[str, Callable[[], Any]] = {
     "learn.Clusters": lambda: learn.fuzzy_c_means(data()[0], 2),
     "learn.Training": lambda: regressor().training,
     "mik.IKBatch": lambda: mik.solve_ik_batch(chain(), [POSE], workers=1),
+    "mik.Follower": lambda: mik.Follower(chain()),
     "mik.IKPath": lambda: mik.solve_ik_path(chain(), [POSE]),
+    "mik.IKPath.timed": lambda: mik.solve_ik_path(chain(), [POSE, (0.3, 0.3, 0.42)]),
+    "mik.TimedPath": timed,
     "mik.IKSolutions": lambda: mik.solve_ik_all(chain(), POSE),
     "optimize.Result": lambda: optimize.minimize(half, optimize.Box([-1.0], [1.0]), "de", FEW),
     "stewart.Designed": lambda: stewart.design(mechanism()),
@@ -476,6 +485,37 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "learn.Training.as_dict": dict,
     "mik.IKBatch.as_dict": dict,
     "mik.IKPath.as_dict": dict,
+    "mik.IKPath.timed": lambda: {"velocity": 1.0, "acceleration": [5.0] * 6, "jerk": None},
+    "mik.Follower": lambda: {
+        "chain": arm(),
+        "rate": 200.0,
+        "limits": mik.MotionLimits.of(arm()),
+        "world": world(),
+        "posture": [0.0, 0.5],
+        "clearance": 0.02,
+    },
+    "mik.Follower.step": lambda: {"target": POSE, "q": X6},
+    "mik.Follower.move": lambda: {"goal": [0.0] * 6, "q": X6},
+    "mik.Follower.stop": lambda: {"q": X6},
+    "mik.Follower.reset": dict,
+    "mik.Follower.switch": lambda: {"target": POSE, "q": X6, "rng": 0},
+    "mik.MotionLimits": lambda: {"velocity": np.ones(2), "acceleration": np.ones(2), "jerk": np.ones(2)},
+    "mik.MotionLimits.of": lambda: {"chain": arm(), "velocity": 1.0, "acceleration": [2.0, 3.0], "jerk": 50.0},
+    "mik.time_path": lambda: {
+        "chain": arm(),
+        "q": [[0.0, 0.0], [0.3, 0.5]],
+        "velocity": 1.0,
+        "acceleration": [2.0, 3.0],
+        "jerk": 50.0,
+    },
+    "mik.TimedPath.sample": lambda: {"every": 0.1},
+    "mik.TimedPath.at": lambda: {"t": [0.0, 0.1]},
+    "mik.TimedPath.as_dict": lambda: {"every": 0.1},
+    "mik.TimedPath.write_csv": lambda: {"file": "timed.csv", "every": 0.1},
+    "mik.TimedPath.joint_trajectory": lambda: {"every": 0.1, "frame": "base", "stamp": 1.0},
+    "mik.TimedPath.write_joint_trajectory": lambda: {"file": "timed.json", "every": 0.1, "frame": "", "stamp": 0.0},
+    "mik.TimedPath.plot": lambda: {"file": "timed.svg"},
+    "timing.draw_timed": lambda: {"timed": timed()},
     "mik.IKResult.as_dict": dict,
     "mik.IKSolutions.as_dict": dict,
     "optimize.Result.as_dict": dict,
@@ -529,7 +569,13 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.Target.residual": lambda: {"at": placed()},
     "mik.Target.met": lambda: {"at": placed()},
     "mik.Target.judge": lambda: {"placement": POSE},
-    "mik.load_robot": lambda: {"name": "rv7fl", "parameters": None, "free_flyer": False, "mimic": True},
+    "mik.load_robot": lambda: {
+        "name": "rv7fl",
+        "parameters": None,
+        "free_flyer": False,
+        "planar": False,
+        "mimic": True,
+    },
     "mik.minimize": lambda: {
         "objective": half,
         "box": optimize.Box([-1.0], [1.0]),

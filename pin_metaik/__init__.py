@@ -31,8 +31,10 @@ from pin_metaik.ik import (
     solve_ik_path,
 )
 from pin_metaik.kinematics import Chain, Limits
+from pin_metaik.motion import Follower, FollowerStep, Following
 from pin_metaik.optimize import ALGORITHMS, AskTell, Box, Budget, Metaheuristic, Search, minimize
 from pin_metaik.robots import Robot, load_robot, robot_names
+from pin_metaik.timing import MotionLimits, TimedPath, time_path
 
 __version__ = "0.1.0"
 
@@ -45,6 +47,9 @@ __all__ = [
     "Budget",
     "Chain",
     "CollisionWorld",
+    "Follower",
+    "FollowerStep",
+    "Following",
     "IKBatch",
     "IKPath",
     "IKProblem",
@@ -55,12 +60,14 @@ __all__ = [
     "Limits",
     "MetaIKError",
     "Metaheuristic",
+    "MotionLimits",
     "Proof",
     "Refinement",
     "Refiner",
     "Robot",
     "Search",
     "Target",
+    "TimedPath",
     "goals",
     "load_robot",
     "minimize",
@@ -69,4 +76,5 @@ __all__ = [
     "solve_ik_all",
     "solve_ik_batch",
     "solve_ik_path",
+    "time_path",
 ]

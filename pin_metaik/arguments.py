@@ -45,11 +45,13 @@ MAKING = {  # what to write where one of these is asked for
     "Mechanism": "stewart.load_mechanism('stroke_100')",
     "Metaheuristic": "mik.ALGORITHMS['gwo']()",
     "Model": "robot.model",
+    "MotionLimits": "mik.MotionLimits.of(chain)",
     "Obstacle": "collision.Obstacle(name, shape, pose)",
     "PathProblem": "mobile.PathProblem.of(scene)",
     "Robot": "mik.load_robot('panda')",
     "Scene": "mobile.load_scene('ten_obstacles')",
     "Suite": "compare.Suite(robots, cases, methods)",
+    "TimedPath": "path.timed()",
     "SynchroDrive": "mobile.NOMAD_200",
     "Workspace": "mechanism.survey()",
 }

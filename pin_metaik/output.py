@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from pathlib import Path
 
+from pin_metaik.arrays import Array
 from pin_metaik.errors import CannotWrite
 
 
@@ -25,6 +27,12 @@ def writable(path: str | Path, *, folder: bool = False) -> Path:
         return _folder(where) if folder else _file(where)
     except OSError as error:
         raise CannotWrite(f"cannot write {where}: {error.strerror or error}") from None
+
+
+def write_table(file: str | Path, header: Iterable[str], rows: Array) -> None:
+    """Write a table (n, c) as CSV with all digits."""
+    lines = [",".join(header), *(",".join(map(repr, row)) for row in rows.tolist())]
+    writable(file).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def _folder(where: Path) -> Path:

@@ -21,6 +21,7 @@ from pin_metaik.collision.padding import Padding
 from pin_metaik.collision.solids import Level, Pairs, Placed, Solids
 
 ENCLOSED = 1e-6  # m added to the margin of coarse solids: what coal's distances may be off by
+INEXACT = 1.0 - 1e-6  # of a distance, what coal's may be off by
 NEAR = 0.05  # m beyond the margin: pairs farther apart do not concern a step
 REACH = 0.1, 0.5, math.inf  # m; how far the nearest pair is looked for, when no boxes overlap
 
@@ -86,10 +87,10 @@ class Checker:
         placed = self.solids.place(q)
         found = []
         for i, j, own in placed.near(self.asked):
-            carriers = self._joint(i), self._joint(j)
+            carriers = self.joint_of(i), self.joint_of(j)
             wanted = joints is None or all(joint in joints for joint in carriers)
             if wanted and self._collide(placed, i, j, own):
-                depth = max(0.0, self._margin(i, j, own) - self._hulls(placed, i, j).distance)
+                depth = max(0.0, self.margin_of(i, j, own) - self._hulls(placed, i, j).distance)
                 found.append((Contact(self._name(i), self._name(j), depth), carriers))
         return found
 
@@ -102,7 +103,7 @@ class Checker:
             near = placed.near(self._bare, min(reach, best.distance))
             new = [(i, j, own) for i, j, own in near if (i, j) not in done]
             done.update((i, j) for i, j, _ in new)
-            coarse = [(placed.gap(*self._levels(*pair)[:2]), pair) for pair in new]
+            coarse = [(placed.gap(*self.levels_of(*pair)[:2]), pair) for pair in new]
             for gap, pair in sorted(coarse):
                 if gap > TOUCH and gap >= best.distance:
                     break  # coarse solids enclose: nothing beyond can be nearer
@@ -116,11 +117,11 @@ class Checker:
         placed = self.solids.place(q)
         total = 0.0
         for i, j, own in placed.near(self.asked):
-            a, b, *_ = self._levels(i, j, own)
+            a, b, *_ = self.levels_of(i, j, own)
             gap = placed.gap(a, b)
             if gap <= 0.0 and (a.mesh or b.mesh):
                 gap = self._hulls(placed, i, j).distance
-            total += max(0.0, self._margin(i, j, own) - gap)
+            total += max(0.0, self.margin_of(i, j, own) - gap)
         return total
 
     def near(self, q: NDArray[np.float64]) -> list[Near]:
@@ -128,10 +129,10 @@ class Checker:
         placed = self.solids.place(q)
         found = []
         for i, j, own in placed.near(self.asked, NEAR):
-            room = placed.distance(*self._levels(i, j, own)[:2]) - self._margin(i, j, own)
+            room = placed.distance(*self.levels_of(i, j, own)[:2]) - self.margin_of(i, j, own)
             normal = placed.normal
             if room <= NEAR and 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none
-                found.append(Near(room, normal, placed.points, (self._joint(i), self._joint(j))))
+                found.append(Near(room, normal, placed.points, (self.joint_of(i), self.joint_of(j))))
         return found
 
     @cached_property
@@ -139,7 +140,7 @@ class Checker:
         """The pairs without their margins."""
         return replace(self.asked, margins=np.zeros(len(self.asked.margins)), margin=0.0)
 
-    def _margin(self, i: int, j: int, own: int) -> float:
+    def margin_of(self, i: int, j: int, own: int) -> float:
         """The distance at or below which a pair collides, m."""
         if own >= 0:
             return self._margins[own]
@@ -151,7 +152,8 @@ class Checker:
         margins: list[float] = self.asked.margins.tolist()
         return margins
 
-    def _joint(self, number: int) -> int:
+    def joint_of(self, number: int) -> int:
+        """Id of the joint that carries a body; 0 is the world."""
         moving = self.solids.moving
         return moving[number].joint if number < len(moving) else 0
 
@@ -159,7 +161,7 @@ class Checker:
         moving = self.solids.moving
         return (moving[number] if number < len(moving) else self.solids.standing[number - len(moving)]).link
 
-    def _levels(self, i: int, j: int, own: int) -> tuple[Level, Level, Level, Level]:
+    def levels_of(self, i: int, j: int, own: int) -> tuple[Level, Level, Level, Level]:
         """The levels of two bodies that are asked first, and those that have the last word."""
         a, b = self.solids.levels[i], self.solids.levels[j]
         c, d = a.last[b.flat], b.last[a.flat]
@@ -168,15 +170,15 @@ class Checker:
         return a.first[b.flat], b.first[a.flat], c, d
 
     def _collide(self, placed: Placed, i: int, j: int, own: int) -> bool:
-        margin = self._margin(i, j, own)
-        a, b, c, d = self._levels(i, j, own)
+        margin = self.margin_of(i, j, own)
+        a, b, c, d = self.levels_of(i, j, own)
         if not self.exact or (a is c and b is d):
             return placed.overlap(a, b, margin)
         return placed.overlap(a, b, margin + ENCLOSED) and placed.overlap(c, d, margin)
 
     def _nearer(self, placed: Placed, i: int, j: int, own: int, best: Distance) -> Distance:
         """The distance of two bodies where it is less than the best, else that."""
-        levels = self._levels(i, j, own)
+        levels = self.levels_of(i, j, own)
         last = levels[2:] if self.exact else levels[:2]
         gap = placed.gap(*last)
         if gap > TOUCH and gap >= best.distance:
@@ -188,6 +190,19 @@ class Checker:
             at = self._hulls(placed, i, j)
             at = replace(at, distance=min(at.distance, 0.0))
         return min(best, at, key=lambda one: one.distance)
+
+    def room(self, placed: Placed, i: int, j: int, own: int, needed: float) -> float:
+        """A distance (m) beyond its margin that a pair has at least; all of it, where that is not more than needed.
+
+        Of bodies that overlap it is below 0, and minus the depth to which the coarse solids do.
+        """
+        a, b, c, d = self.levels_of(i, j, own)
+        taken = self.margin_of(i, j, own) + ENCLOSED
+        room = INEXACT * placed.gap(a, b) - taken
+        if room > needed or not self.exact or (a is c and b is d):
+            return room
+        fine = INEXACT * placed.gap(c, d) - taken
+        return fine if fine > 0.0 else min(fine, room)
 
     def _hulls(self, placed: Placed, i: int, j: int) -> Distance:
         """Distance of the convex hulls of two bodies; minus their depth when they overlap."""

@@ -213,6 +213,11 @@ class Placed:
         found: list[list[int]] = self._found[:count].tolist() if count else []
         return found
 
+    @property
+    def least(self) -> NDArray[np.float64]:
+        """Distances (m) that the pairs ``near`` found last are at least apart by their boxes, in the same order."""
+        return self._least
+
     def bounds(self, pairs: Pairs) -> NDArray[np.float64]:
         """Distances (p,) that the pairs that move are at least apart by their boxes, m; below 0 where these overlap."""
         rows = [row for _, _, row in self.near(pairs, math.inf)]

@@ -25,6 +25,8 @@ from pin_metaik.ik.starts import drawn
 from pin_metaik.kinematics import Chain
 from pin_metaik.plain import fields_of
 from pin_metaik.randomness import Rng
+from pin_metaik.timing import TimedPath, time_path
+from pin_metaik.timing.limits import Share
 from pin_metaik.watching import Progress, Stopped, Watch, tell
 
 WIDEST = 48  # solutions in a layer
@@ -75,6 +77,26 @@ class IKPath:
         periodic = self.chain.limits.periodic
         x[:, periodic] = np.unwrap(x[:, periodic], axis=0)
         return x
+
+    def timed(self, *, velocity: Share = None, acceleration: Share = None, jerk: Share = None) -> TimedPath:
+        """The path with times, so that the joints keep their limits at every time; see ``timing.time_path``.
+
+        Args:
+            velocity: rad/s or m/s, one number or (n,) one a joint; default: the model's.
+            acceleration: rad/s^2 or m/s^2; default: full speed within 0.2 s.
+            jerk: rad/s^3 or m/s^3; default: not limited.
+
+        Raises:
+            InvalidSetting: If the path is not continuous; see ``timing.time_path``.
+            MissingExtra: toppra (without jerk) or ruckig (with) is not installed.
+        """
+        if not self.continuous:
+            missed = np.flatnonzero(~self.success).tolist()
+            raise InvalidSetting(
+                "only a continuous path can be timed; this one "
+                + (f"does not meet pose {missed[0]}" if missed else f"jumps before pose {self.breaks[0]}")
+            )
+        return time_path(self.chain, self.q, velocity=velocity, acceleration=acceleration, jerk=jerk)
 
 
 @checked

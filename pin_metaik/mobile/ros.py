@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-from importlib.util import find_spec
 from pathlib import Path as File
 from typing import Any
 
@@ -11,15 +9,13 @@ import numpy as np
 
 from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
-from pin_metaik.errors import InvalidSetting, MissingExtra
 from pin_metaik.mobile.curves.curve import STEP, Curve
 from pin_metaik.mobile.motion.trajectory import Trajectory
 from pin_metaik.mobile.paths.path import Path
 from pin_metaik.optimize.settings import within
-from pin_metaik.output import writable
+from pin_metaik.ros import LAST_STAMP, header, message_file, write_message
 
 FRAME = "map"
-NANO = 1_000_000_000
 EVERY = 0.1  # s
 
 Driven = Path | Curve | Trajectory
@@ -41,12 +37,12 @@ def nav_path(of: Driven, frame: str = FRAME, *, stamp: float = 0.0, every: float
     Raises:
         InvalidSetting: A stamp below zero, or a distance between poses that is not above zero.
     """
-    within("stamp", stamp, 0, 2**31 - 1)
+    within("stamp", stamp, 0, LAST_STAMP)
     poses, times = _poses(of, every)
     return {
-        "header": _header(frame, stamp),
+        "header": header(frame, stamp),
         "poses": [
-            {"header": _header(frame, stamp + t), "pose": _pose(*pose)}
+            {"header": header(frame, stamp + t), "pose": _pose(*pose)}
             for t, pose in zip(times.tolist(), poses.tolist(), strict=True)
         ],
     }
@@ -64,24 +60,12 @@ def write_nav_path(
         MissingExtra: YAML is wanted and PyYAML is not installed.
     """
     where = ros_file(file)
-    message = nav_path(of, frame, stamp=stamp, every=every)
-    if where.suffix.lower() == ".json":
-        text = json.dumps(message, allow_nan=False)
-    else:
-        import yaml
-
-        text = yaml.safe_dump(message, sort_keys=False)
-    where.write_text(text, encoding="utf-8")
+    write_message(where, nav_path(of, frame, stamp=stamp, every=every))
 
 
 def ros_file(file: str | File) -> File:
     """The path of a file that a ``nav_msgs/Path`` can be written to."""
-    suffix = File(file).suffix.lower()
-    if suffix not in (".yaml", ".yml", ".json"):
-        raise InvalidSetting(f"a nav_msgs/Path is written as .yaml or .json, not as {str(file)!r}")
-    if suffix != ".json" and find_spec("yaml") is None:
-        raise MissingExtra(f"writing {file}", "mobile")
-    return writable(file)
+    return message_file(file, "nav_msgs/Path")
 
 
 def _poses(of: Driven, every: float | None) -> tuple[Array, Array]:
@@ -97,11 +81,6 @@ def _poses(of: Driven, every: float | None) -> tuple[Array, Array]:
             along = np.diff(of.points, axis=0)
             headings = np.arctan2(along[:, 1], along[:, 0])
             return np.column_stack((of.points, np.append(headings, headings[-1]))), np.zeros(len(of.points))
-
-
-def _header(frame: str, t: float) -> dict[str, Any]:
-    seconds, nanoseconds = divmod(round(t * NANO), NANO)
-    return {"stamp": {"sec": seconds, "nanosec": nanoseconds}, "frame_id": frame}
 
 
 def _pose(x: float, y: float, heading: float) -> dict[str, Any]:

@@ -129,6 +129,7 @@ def load_robot(
     *,
     parameters: Mapping[str, float] | None = None,
     free_flyer: bool = False,
+    planar: bool = False,
     mimic: bool = True,
 ) -> Robot:
     """Load a robot.
@@ -140,7 +141,9 @@ def load_robot(
         name: Name in the catalogue or in example-robot-data (also as ``robot_names`` gives it), path of a URDF, of an
             MJCF or of a DH table's ``.toml``, or the text of a URDF or an MJCF.
         parameters: Values that replace those of a DH table's ``[parameters]``, in the table's units.
-        free_flyer: Put the base on a free-flyer (six more coordinates); otherwise it is fixed.
+        free_flyer: Put the base on a free-flyer, six more coordinates, of which a chain wants limits for
+            ``root_joint.x``, ``.y`` and ``.z`` (m); otherwise the base is fixed.
+        planar: Put it on a plane, three more coordinates: limits for ``root_joint.x`` and ``.y``.
         mimic: Make joints with a mimic tag scaled copies of the joint they follow instead of coordinates of their own
             (Pinocchio's ``aba`` refuses such models); their limits bind the joint they follow. Joints whose tag means
             nothing stay free; ``robot.free_mimics`` names them.
@@ -148,9 +151,11 @@ def load_robot(
     Raises:
         UnknownName: If nothing is so named, or the table has no such parameter.
         InvalidTable: If the DH table makes no sense.
-        InvalidModel: If the file is missing, is not a robot, or no joint of it moves anything.
+        InvalidModel: If the file is missing, is not a robot, no joint of it moves anything, or the base is both.
     """
-    robot = _loaded(name, parameters, "free flyer" if free_flyer else "fixed", mimic)
+    if free_flyer and planar:
+        raise InvalidModel("a base is on a free-flyer or on a plane: give free_flyer or planar, not both")
+    robot = _loaded(name, parameters, "free flyer" if free_flyer else "planar" if planar else "fixed", mimic)
     _say(robot.name, robot.remarks)
     return robot
 

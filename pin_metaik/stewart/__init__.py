@@ -12,6 +12,7 @@ mechanism.survey().gdi
 stewart.design(mechanism).mechanism
 """
 
+from pin_metaik.figures import save_picture
 from pin_metaik.stewart.files.library import load_mechanism, mechanism_names
 from pin_metaik.stewart.files.points import save_points
 from pin_metaik.stewart.files.reading import read_mechanism
@@ -38,7 +39,6 @@ from pin_metaik.stewart.platform.poses import pose_at
 from pin_metaik.stewart.platform.servos import Servos
 from pin_metaik.stewart.platform.states import PoseState
 from pin_metaik.stewart.show.curves import draw_history, draw_motion
-from pin_metaik.stewart.show.figures import save_picture
 from pin_metaik.stewart.show.picture import draw, draw_above, draw_into
 from pin_metaik.stewart.synthesis.design import Designed, design
 from pin_metaik.stewart.synthesis.fitness import Fitness, Score

@@ -6,10 +6,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 import pin_metaik as mik
+from pin_metaik.collision import load_scene
 from pin_metaik.errors import InvalidBounds, InvalidConfiguration, UnsupportedJoint
 from pin_metaik.kinematics.joints import angles, quaternion
 
 OFFSET = pin.SE3(pin.utils.rotate("x", 0.3), np.array([0.1, 0.2, 0.3]))
+TIAGO_HAND = mik.load_robot("tiago").frame
 BASE = {"root_joint.x": (-1.0, 1.0), "root_joint.y": (-0.5, 2.0), "root_joint.z": (0.2, 1.5)}
 
 
@@ -121,17 +123,32 @@ def test_a_quadruped_stands_on_four_feet_with_its_body_where_it_shall_be() -> No
 
 
 def test_a_mobile_manipulator_drives_and_reaches_with_the_quick_solver() -> None:
-    base = pin.Model()
-    base.addJoint(0, pin.JointModelPlanar(), pin.SE3.Identity(), "base")
-    base.addFrame(pin.Frame("plate", 1, 0, pin.SE3.Identity(), pin.FrameType.BODY))
-    model = pin.appendModel(base, mik.load_robot("ur5").model, base.getFrameId("plate"), pin.SE3.Identity())
-    chain = mik.Chain(model, "tool0", limits={"base.x": (-3.0, 3.0), "base.y": (-3.0, 3.0)})
+    model = mik.load_robot("tiago", planar=True).model
+    chain = mik.Chain(model, TIAGO_HAND, limits={"root_joint.x": (-3.0, 3.0), "root_joint.y": (-3.0, 3.0)})
     assert chain.has_pose_solver
+    assert chain.names[:3] == ("root_joint.x", "root_joint.y", "root_joint.yaw")
     for q in chain.q(chain.box.sample(np.random.default_rng(0), 50)):
         (pose,) = chain.placements(q)
         result = mik.solve_ik(chain, pose)
         assert result.success
         assert pin.isNormalized(model, result.q, 1e-9)
+
+
+def test_a_base_drives_round_what_is_in_the_way() -> None:
+    robot = mik.load_robot("tiago", planar=True)
+    chain = mik.Chain(robot, TIAGO_HAND, limits={"root_joint.x": (-2.0, 2.0), "root_joint.y": (-2.0, 2.0)})
+    world = mik.CollisionWorld(robot, load_scene("table"))
+    cleared, rng = 0, np.random.default_rng(4)
+    for q in chain.q(chain.box.sample(rng, 300)):
+        if world.in_collision(q):
+            continue
+        (pose,) = chain.placements(q)
+        result = mik.solve_ik(chain, pose, world=world)
+        assert not result.success or not world.in_collision(result.q)
+        cleared += result.success
+        if cleared == 10:
+            break
+    assert cleared == 10
 
 
 def test_a_configuration_whose_quaternion_is_none_is_named() -> None:

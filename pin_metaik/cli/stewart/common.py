@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from rich.console import Console
 
 from pin_metaik import stewart
+from pin_metaik.figures import picture_file
 from pin_metaik.output import writable
 from pin_metaik.stewart import Mechanism
 from pin_metaik.stewart.kinematics.conditioning import NORMS
 from pin_metaik.stewart.mechanism.task import Index
-from pin_metaik.stewart.show.figures import picture_file
 from pin_metaik.stewart.show.notes import notes
 from pin_metaik.stewart.show.report import Lines
 

@@ -13,8 +13,8 @@ from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.motion.trajectory import Moved
-from pin_metaik.mobile.paths.path import write_table
 from pin_metaik.optimize.settings import MANY
+from pin_metaik.output import write_table
 
 Pose = tuple[float, float, float]
 

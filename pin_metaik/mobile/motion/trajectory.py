@@ -15,9 +15,8 @@ from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.mobile.motion.turn import clothoid
-from pin_metaik.mobile.paths.path import write_table
 from pin_metaik.optimize.settings import MANY, within
-from pin_metaik.output import writable
+from pin_metaik.output import writable, write_table
 
 SAMPLES = 0.02  # s
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path as File
@@ -15,7 +14,7 @@ from pin_metaik.arguments import array, checked, shown
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.optimize.settings import within
-from pin_metaik.output import writable
+from pin_metaik.output import write_table
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,12 +87,6 @@ class Path:
     def write(self, file: str | File) -> None:
         """Write x and y of the points as CSV."""
         write_table(file, ("x", "y"), self.points)
-
-
-def write_table(file: str | File, header: Iterable[str], rows: Array) -> None:
-    """Write a table (n, c) as CSV with all digits."""
-    lines = [",".join(header), *(",".join(map(repr, row)) for row in rows.tolist())]
-    writable(file).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def _offset(a: Array, b: Array, point: Array) -> tuple[float, bool]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from pin_metaik.arguments import checked
+from pin_metaik.figures import new_figure
 from pin_metaik.stewart.kinematics.trajectory import Motion
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
-from pin_metaik.stewart.show.figures import PLATE, ROD, STEEL, new_figure
+from pin_metaik.stewart.show.colours import PLATE, ROD, STEEL
 from pin_metaik.stewart.synthesis.design import Designed
 
 if TYPE_CHECKING:

@@ -10,6 +10,7 @@ import pinocchio as pin
 
 from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
+from pin_metaik.figures import need_figure, new_figure
 from pin_metaik.stewart.kinematics.forward import level
 from pin_metaik.stewart.kinematics.inverse import inverse
 from pin_metaik.stewart.mechanism.mechanism import Mechanism
@@ -18,7 +19,7 @@ from pin_metaik.stewart.platform.geometry import Geometry, on_circle
 from pin_metaik.stewart.platform.limits import LegLimits
 from pin_metaik.stewart.platform.poses import PoseLike, one_pose, pose_at
 from pin_metaik.stewart.show.body import body_of, draw_body, polygons
-from pin_metaik.stewart.show.figures import PLATE, ROD, STEEL, need_figure, new_figure
+from pin_metaik.stewart.show.colours import PLATE, ROD, STEEL
 from pin_metaik.stewart.workspace.singularity import singularities
 from pin_metaik.stewart.workspace.workspace import Workspace
 

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FORMATS = (".png", ".svg", ".pdf")
-STEEL, PLATE, ROD = "#4a4f57", "#e07b1a", "#2f6fb0"
 
 
 def need_plots() -> None:

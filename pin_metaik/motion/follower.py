@@ -1,0 +1,282 @@
+"""Following a target that moves, tick by tick: for teleoperation and servoing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pin_metaik.arguments import checked
+from pin_metaik.collision import CollisionWorld
+from pin_metaik.errors import InvalidSetting, InvalidTarget
+from pin_metaik.ik import IKProblem, solve_ik_all
+from pin_metaik.ik.goals.pose import TargetLike
+from pin_metaik.ik.problem import check_world
+from pin_metaik.kinematics import Chain
+from pin_metaik.kinematics.model import as_configuration
+from pin_metaik.motion.step import FollowerStep, Following
+from pin_metaik.motion.stops import Stopping, Stops, Surroundings
+from pin_metaik.optimize.settings import positive
+from pin_metaik.randomness import Rng
+from pin_metaik.timing.limits import MotionLimits
+
+SHARES = 1.0, 0.5, 0.25, 0.1  # of the change of speed, tried one after the other where bodies are near
+POSTURE_RATE = 2.0  # 1/s at which what the targets leave free returns to the posture
+LOST = 0.5  # of the square of an error: where no direction makes up more than the rest, there is none
+SWITCHES = 32  # solutions to choose from, at most
+THERE = 1e-9  # rad or m from a configuration that is moved to
+GENTLE = 0.25  # of the greatest speed, at most, towards the posture
+NOTHING_NEAR = Surroundings({}, np.empty((0, 10)), np.empty((0, 2), dtype=np.int64))
+
+
+@checked
+class Follower:
+    """Configurations, one a control tick, that follow targets within limits.
+
+    For every target, and for every configuration from which it is started at rest, inside its limits, or which it has
+    returned itself, each tick keeps, to rounding:
+
+    1. |v_j| <= velocity_j;
+    2. |v_j - v_j of the tick before| <= acceleration_j dt;
+    3. the joint's lower and upper limit; and it can stop before either.
+
+    Why: a joint that brakes from a speed v >= 0 has v - a, v - 2 a, ... with a = acceleration dt, and goes on by
+    D(v) = dt ((v - a) + (v - 2 a) + ...) in the ticks to come. A tick takes only speeds with dt v + D(v) <= d, where d
+    is how far the limit is away; in the next one d' = d - dt v >= D(v). There the speed w = max(v - a, 0) keeps (1) and
+    (2), and dt w + D(w) = D(v) <= d': it is one of those that may be taken. So after a tick that has kept (3) there is
+    always a speed that keeps all, braking is one, and by induction from a start at rest none is ever broken. The same
+    holds towards the lower limit, and for each joint by itself. The speeds that may be taken are an interval; the tick
+    takes the one that serves the target best.
+
+    With a world, each tick is one from which the robot can brake, every joint as hard as its acceleration allows,
+    without a collision: that is proved before the tick is taken, by distances and by how far bodies can move. Where the
+    proof fails for all speeds that are tried, it brakes, for which the proof of the tick before still stands. So it
+    never collides, nor does it when it brakes, as long as nothing else moves, the joints outside the chain included,
+    and it was started at rest and free of collisions. What moves by itself is seen where it is at each tick, and what
+    comes too fast can hit it. Down to ``clearance`` beyond the margin distances slow the robot down; nearer it goes
+    only where it must, and never by more than half of what is left at a time.
+
+    If it is given another configuration than its last one (a measured one), (1) and (2) still hold; a joint that is too
+    near its limit for its speed brakes as hard as (2) allows, and one that is beyond it goes back. Commands to a
+    position controller are best made from the commands before: ``step(target, last.q)``.
+
+    It moves towards a target by damped least squares with these intervals inside, leads a target that moves by its
+    speed since the last tick, and slows down in time so that no joint overshoots. In a singularity the damping lets go
+    of the directions that are lost, smoothly, and the target is missed for a while; a target out of reach is approached
+    as near as the linearised arm sees it, without swinging. Jerk is not limited. It never jumps to another branch of
+    solutions: where its own ends, it goes along the limits as near to the target as it can, and ``step`` says so;
+    ``switch`` and ``move`` lead to another branch.
+
+    Attributes:
+        chain: The joints to move and the frames to place.
+        rate: Ticks per second, Hz.
+        limits: How fast the joints may move.
+        world: What must not collide; None: nothing is looked at.
+        posture: (nq,) what the joints return to as far as the targets leave them free; None: they stay.
+        clearance: Distance beyond the world's margin from which on it is kept from coming nearer, m.
+        v: (n,) speeds of the last tick, rad/s or m/s.
+    """
+
+    def __init__(
+        self,
+        chain: Chain,
+        rate: float = 500.0,
+        limits: MotionLimits | None = None,
+        world: CollisionWorld | None = None,
+        *,
+        posture: ArrayLike | None = None,
+        clearance: float = 0.01,
+    ) -> None:
+        """Begin at rest.
+
+        Args:
+            chain: The joints to move and the frames to place; position limits are the chain's.
+            rate: Ticks per second, Hz.
+            limits: How fast the joints may move; default: ``MotionLimits.of(chain)``, the model's.
+            world: What must not collide.
+            posture: (nq,) what the joints return to as far as the targets leave them free; default: they stay.
+            clearance: m.
+
+        Raises:
+            InvalidSetting: If ``rate`` or ``clearance`` is not above 0 and finite, limits are not those of n joints or
+                a joint has none, or the world is another model's than the chain.
+            InvalidConfiguration: If ``posture`` is not a configuration of the model.
+        """
+        positive("rate", rate)
+        positive("clearance", clearance)
+        check_world(chain, world)
+        limits = MotionLimits.of(chain) if limits is None else limits
+        if len(limits.velocity) != chain.n:
+            raise InvalidSetting(f"limits are of {len(limits.velocity)} joints, the chain has {chain.n}")
+        self.chain, self.rate, self.limits, self.world, self.clearance = chain, float(rate), limits, world, clearance
+        self.posture = None if posture is None else chain.configuration(posture)
+        self.v = np.zeros(chain.n)
+        self._dt = 1.0 / self.rate
+        self._motion = np.array([limits.velocity, limits.acceleration * self._dt, np.zeros(chain.n)])
+        self._gentle = GENTLE * limits.velocity
+        self._stops = None if world is None else Stops(chain, world, clearance)
+        self._moves = np.zeros((chain.model.njoints, len(chain.paths.joints)), dtype=np.int64)
+        if self._stops is not None:
+            self._moves = self._stops.moves
+        self._out, self._sizes = np.empty((3, chain.n)), np.empty(2)
+        self._before: IKProblem | None = None
+        self._loops = _loops()
+
+    def step(self, target: TargetLike | Sequence[TargetLike], q: ArrayLike) -> FollowerStep:
+        """One tick towards a target.
+
+        Args:
+            target: As for ``solve_ik``. Its speed is taken from where it was one tick ago; targets that come less often
+                than ticks are best interpolated.
+            q: (nq,) where the robot is: at first the measured configuration, then what the last step returned.
+
+        Raises:
+            InvalidTarget: If the target is none.
+            InvalidConfiguration: If q is not a configuration of the model.
+        """
+        at = as_configuration(self.chain.model, q)
+        chain = self.chain.at(at)
+        problem = IKProblem.of(chain, target)
+        if problem.goals:
+            raise InvalidTarget(f"a follower follows targets, one a frame, got {problem.goals.each[0]!r} as well")
+        before, self._before = self._before, problem
+        if before is None or before.rows is not problem.rows:
+            before = problem
+        x = chain.x(at)
+        if self.posture is not None:
+            wish = POSTURE_RATE * chain.limits.way(x, chain.x(self.posture))
+            self._motion[2] = np.clip(wish, -self._gentle, self._gentle)
+        around = self._around(at)
+        lost, pushed = self._loops.aim(
+            chain.bare, before.records, problem.records, problem.rows, x, self.v, self._motion, self._dt,
+            around.near, around.carriers, self._moves, self._out,
+        )  # fmt: skip
+        share, after = self._go(chain, at, x, around)
+        met = self._loops.judge(chain.bare, problem.records, problem.rows, chain.x(after), self._sizes)
+        stopped = self._stopped()
+        if met:
+            status = Following.ON_TARGET
+        elif share < 1.0 or pushed:
+            status = Following.NEAR_COLLISION
+        elif lost > LOST:
+            status = Following.AT_LIMITS if stopped else Following.NO_DIRECTION
+        else:
+            status = Following.UNDER_WAY
+        position, orientation = self._sizes.tolist()
+        return FollowerStep(after, self.v.copy(), status, position, orientation, share, stopped)
+
+    def move(self, goal: ArrayLike, q: ArrayLike) -> FollowerStep:
+        """One tick towards a configuration, in the joints themselves: all begin and end to move together, as a rule.
+
+        Args:
+            goal: (nq,) where to, brought inside the limits; joints outside the chain stay as they are.
+            q: (nq,) where the robot is, as for ``step``.
+
+        Raises:
+            InvalidConfiguration: If ``goal`` or ``q`` is not a configuration of the model.
+        """
+        at = as_configuration(self.chain.model, q)
+        chain = self.chain.at(at)
+        self._before = None
+        x, end = chain.x(at), chain.x(chain.configuration(goal))
+        around = self._around(at)
+        way = chain.limits.way(x, end)
+        self._loops.head(chain.bare, way, x, self.v, self._motion, self._dt, self._out)
+        share, after = self._go(chain, at, x, around)
+        there = bool((np.abs(chain.limits.way(chain.x(after), end)) <= THERE).all())
+        status = Following.ON_TARGET if there else Following.UNDER_WAY if share == 1.0 else Following.NEAR_COLLISION
+        return FollowerStep(after, self.v.copy(), status, math.nan, math.nan, share)
+
+    def stop(self, q: ArrayLike) -> FollowerStep:
+        """One tick of braking, every joint as hard as its acceleration allows.
+
+        Args:
+            q: (nq,) where the robot is, as for ``step``.
+
+        Raises:
+            InvalidConfiguration: If ``q`` is not a configuration of the model.
+        """
+        return self.move(q, q)
+
+    def reset(self) -> None:
+        """Forget speeds and targets: the robot stands, and begins anew."""
+        self.v, self._before = np.zeros(self.chain.n), None
+
+    def switch(
+        self, target: TargetLike | Sequence[TargetLike], q: ArrayLike, *, rng: Rng = None
+    ) -> NDArray[np.float64] | None:
+        """Another configuration (nq,) that meets a target: where to ``move`` when a branch ends.
+
+        It takes milliseconds, or longer in a world: ask for it while the robot stands. Nothing is said of the way
+        there: ``move`` stops before it collides.
+
+        Args:
+            target: As for ``solve_ik``.
+            q: (nq,) where the robot is.
+            rng: Seed or generator; ``None`` is a fixed seed.
+
+        Returns:
+            Of the solutions found, in a world those free of collisions, the one that takes the joints the least time;
+            None, if there is none.
+
+        Raises:
+            InvalidTarget: If the target is none.
+            InvalidConfiguration: If q is not a configuration of the model.
+        """
+        found = solve_ik_all(self.chain, target, q, limit=SWITCHES, world=self.world, rng=rng)
+        if not len(found):
+            return None
+        ways = self.chain.limits.way(self.chain.x(as_configuration(self.chain.model, q)), found.x)
+        nearest: NDArray[np.float64] = found.q[np.argmin((np.abs(ways) / self.limits.velocity).max(axis=1))]
+        return nearest
+
+    def _around(self, q: NDArray[np.float64]) -> Surroundings:
+        """What is near a configuration (nq,), as far as the robot may go before it stands."""
+        if self._stops is None:
+            return NOTHING_NEAR
+        fastest = np.minimum(np.abs(self.v) + self._motion[1], self.limits.velocity)
+        return self._stops.around(q, self._stopping(q, fastest).way(0.0, math.inf))
+
+    def _stopping(self, q: NDArray[np.float64], v: NDArray[np.float64]) -> Stopping:
+        return Stopping(self.chain, q, v, self._motion[1], self._dt)
+
+    def _go(
+        self, chain: Chain, q: NDArray[np.float64], x: NDArray[np.float64], around: Surroundings
+    ) -> tuple[float, NDArray[np.float64]]:
+        """Take the speeds of the tick as far as the robot can stop after it: which part, and where it leads (nq,)."""
+        wanted, braked = self._out[0], self._out[1]
+        share = 1.0
+        if around.rooms and self._stops is not None:
+            tries = (
+                s for s in SHARES if self._stops.free(around.rooms, self._stopping(q, braked + s * (wanted - braked)))
+            )
+            share = next(tries, 0.0)
+        self.v = wanted.copy() if share == 1.0 else braked + share * (wanted - braked)
+        limits = chain.limits
+        return share, chain.q(np.minimum(np.maximum(x + self._dt * self.v, limits.lower), limits.upper), q)
+
+    def _stopped(self) -> tuple[str, ...]:
+        """Names of the joints that stand at limits which the way leads beyond."""
+        if not self._out[2].any():
+            return ()
+        return tuple(name for name, stopped in zip(self.chain.names, self._out[2].tolist(), strict=True) if stopped)
+
+
+class _Loops(NamedTuple):
+    """The compiled loops, without the frame around them."""
+
+    aim: Callable[..., tuple[float, int]]
+    head: Callable[..., None]
+    judge: Callable[..., bool]
+
+
+@cache
+def _loops() -> _Loops:
+    """Imported late: what compiles them takes 0.4 s to import."""
+    from pin_metaik.motion import kernel
+
+    return _Loops(*(cast(Any, loop).compiled() for loop in (kernel.aim, kernel.head, kernel.judge)))

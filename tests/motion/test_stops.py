@@ -1,0 +1,168 @@
+"""Followers in a world: nothing is touched, and braking never touches anything either."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from numpy.testing import assert_allclose
+from numpy.typing import NDArray
+
+import pin_metaik as mik
+from pin_metaik import collision
+from pin_metaik.motion.stops import Stopping, Stops
+
+RATE = 200.0
+HARD = (15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0)  # rad/s^2, of panda's data sheet
+HOME = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.7, 0.0])
+
+
+def walled(gap: float = 0.16) -> tuple[mik.Chain, mik.CollisionWorld]:
+    """Panda, and a wall so far (m) in front of its hand."""
+    robot = mik.load_robot("panda")
+    chain = mik.Chain(robot, robot.frame)
+    ahead = chain.placements(HOME)[0].translation[0] + gap
+    wall = collision.Obstacle("wall", collision.Box((0.02, 2.0, 2.0)), (ahead, 0.0, 0.5))
+    return chain, mik.CollisionWorld(robot, [wall])
+
+
+def moved(pose: pin.SE3, *by: float) -> pin.SE3:
+    return pin.SE3(pose.rotation, pose.translation + by)
+
+
+def between(chain: mik.Chain, q: NDArray[np.float64], v: NDArray[np.float64], parts: int) -> NDArray[np.float64]:
+    """Configurations on the way of one tick that ends at q."""
+    return chain.q(chain.x(q) - np.linspace(0.0, 1.0, parts)[:, None] * v / RATE, q)
+
+
+@pytest.mark.parametrize("scene", ["shelf", "table"])
+def test_random_targets_among_obstacles_never_lead_into_one(scene: str) -> None:
+    robot = mik.load_robot("panda")
+    chain = mik.Chain(robot, robot.frame)
+    world = mik.CollisionWorld(robot, collision.load_scene(scene))
+    rng, limits = np.random.default_rng(0), mik.MotionLimits.of(chain, acceleration=HARD)
+    follower = mik.Follower(chain, RATE, limits, world)
+    q = next(q for q in chain.q(chain.box.sample(rng, 100)) if world.min_distance(q).distance > 0.01)
+    for k, x in enumerate(chain.box.sample(rng, 25)):
+        target = chain.placements(chain.q(x))[0]
+        for _ in range(40):
+            step = follower.step(target, q) if k % 3 else follower.move(chain.q(x), q)
+            q = step.q
+            assert not world.in_collision_batch(between(chain, q, step.v, 3), workers=1).any()
+    assert world.min_distance(q).distance > 0.0
+
+
+def test_from_every_tick_it_can_brake_without_a_collision() -> None:
+    chain, world = walled()
+    limits = mik.MotionLimits.of(chain, acceleration=HARD)
+    follower, q = mik.Follower(chain, RATE, limits, world), HOME
+    start = chain.placements(q)[0]
+    target = moved(start, 0.5, 0.3, 0.0)
+    for _ in range(80):
+        step = follower.step(target, q)
+        q = step.q
+        braking = Stopping(
+            chain,
+            q,
+            np.sign(step.v) * np.maximum(np.abs(step.v) - limits.acceleration / RATE, 0.0),
+            limits.acceleration / RATE,
+            1.0 / RATE,
+        )
+        ticks = np.linspace(0.0, braking.ticks, 6)
+        assert not any(world.in_collision(braking.q(float(np.floor(tick)))) for tick in ticks)
+
+
+def test_at_a_wall_it_slides_along_and_says_what_holds_it() -> None:
+    chain, world = walled()
+    follower, q = mik.Follower(chain, RATE, mik.MotionLimits.of(chain, acceleration=HARD), world, clearance=0.02), HOME
+    start = chain.placements(q)[0]
+    target = moved(start, 0.3, 0.25, 0.0)
+    for _ in range(500):
+        step = follower.step(target, q)
+        q = step.q
+    assert step.status is mik.Following.NEAR_COLLISION
+    assert_allclose(world.min_distance(q).distance, 0.02, atol=5e-3)
+    assert chain.placements(q)[0].translation[1] > 0.15  # along the wall it has gone all the same
+    for _ in range(500):
+        step = follower.step(start, q)
+        q = step.q
+    assert step.status is mik.Following.ON_TARGET
+
+
+def test_an_obstacle_that_comes_near_pushes_it_away() -> None:
+    chain, world = walled(0.1)
+    follower, q = mik.Follower(chain, RATE, mik.MotionLimits.of(chain, acceleration=HARD), world), HOME
+    start = chain.placements(q)[0]
+    x, least = 0.07, 1.0
+    for _ in range(150):
+        x = max(x - 0.04 / RATE, 0.04)  # at 4 cm/s
+        world.move("wall", (start.translation[0] + x, 0.0, 0.5))
+        q = follower.step(start, q).q
+        least = min(least, world.min_distance(q).distance)
+    assert least > 0.0
+    assert chain.placements(q)[0].translation[0] < start.translation[0] - 0.001
+
+
+def test_begun_in_a_collision_it_goes_out_whatever_the_target() -> None:
+    chain, world = walled(0.04)
+    assert world.in_collision(HOME)
+    limits = mik.MotionLimits.of(chain, acceleration=HARD)
+    start = chain.placements(HOME)[0]
+    for ahead in (0.2, -0.2):
+        follower, q = mik.Follower(chain, RATE, limits, world), HOME
+        deepest = world.min_distance(q).distance
+        for _ in range(300):
+            q = follower.step(moved(start, ahead, 0.0, 0.0), q).q
+            assert world.min_distance(q).distance > deepest - 1e-3
+        assert not world.in_collision(q)
+
+
+def sliding() -> mik.Robot:
+    """A turn, a slide, a turn, and a joint that mimics the slide, with boxes."""
+    box = (
+        '<collision><origin xyz="0.1 0 0.1" rpy="0.3 0 0"/><geometry><box size="0.3 0.05 0.1"/></geometry></collision>'
+    )
+    joint = (
+        '<joint name="j{0}" type="{1}"><parent link="l{2}"/><child link="l{0}"/><origin xyz="0.2 0.1 0" rpy="0 {2} 0"/>'
+        '<axis xyz="0 0 1"/><limit lower="-0.4" upper="0.9" effort="1" velocity="1"/>{3}</joint>'
+    )
+    kinds = ("revolute", "prismatic", "revolute", "revolute", "prismatic")
+    parents = (0, 1, 2, 3, 3)
+    mimics = ("", "", "", "", '<mimic joint="j2" multiplier="-0.5" offset="0.1"/>')
+    links = "".join(f'<link name="l{i}">{box}</link>' for i in range(6))
+    joints = "".join(
+        joint.format(i + 1, kind, parent, mimic)
+        for i, (kind, parent, mimic) in enumerate(zip(kinds, parents, mimics, strict=True))
+    )
+    return mik.load_robot(f'<robot name="sliding">{links}{joints}</robot>')
+
+
+@pytest.mark.parametrize("name", ["panda", "ur5", "sliding"])
+def test_no_body_moves_farther_than_its_levers_allow(name: str) -> None:
+    robot = sliding() if name == "sliding" else mik.load_robot(name)
+    chain = mik.Chain(robot, "l4" if name == "sliding" else robot.frame)
+    world = mik.CollisionWorld(robot)
+    stops, rng = Stops(chain, world, 0.01), np.random.default_rng(0)
+    checker = stops.checker
+    box = chain.limits.box()
+    for _ in range(20):
+        x, y = box.sample(rng, 2)
+        y = x + rng.choice([1.0, 0.01]) * (y - x)
+        bodies = checker.solids.moving
+        corners = [body.solid.box[:3] + rng.uniform(-1, 1, (4, 3)) * body.solid.box[3:6] for body in bodies]
+        rows = [checker.solids.place(chain.q(at)).poses[: len(bodies)].copy() for at in (x, y)]
+        for i, points in enumerate(corners):
+            before, after = (points @ row[i][:9].reshape(3, 3) + row[i][9:] for row in rows)
+            far = np.linalg.norm(after - before, axis=1).max()
+            assert far <= stops._against[i] @ np.abs(y - x) + 1e-9
+
+
+def test_a_distance_that_is_remembered_is_never_larger_than_the_one_there_is() -> None:
+    chain, world = walled()
+    follower, q = mik.Follower(chain, RATE, mik.MotionLimits.of(chain, acceleration=HARD), world), HOME
+    start, rng = chain.placements(q)[0], np.random.default_rng(0)
+    for _ in range(100):
+        q = follower.step(pin.SE3(start.rotation, start.translation + rng.uniform(-0.2, 0.2, 3)), q).q
+        fresh = Stops(chain, world, 0.01).around(q, np.zeros(7)).rooms
+        known = follower._around(q).rooms
+        assert all(known[pair] <= fresh[pair] + 1e-6 for pair in fresh.keys() & known.keys())
