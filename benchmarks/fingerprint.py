@@ -140,10 +140,14 @@ def digest(data: bytes) -> str:
     return blake2b(data, digest_size=4).hexdigest()
 
 
-def fingerprint(scale: float) -> dict[str, dict[str, Any]]:
-    """Digests of the questions of each group, of its answers together, and of each of its answers."""
+def fingerprint(scale: float, only: str = "") -> dict[str, dict[str, Any]]:
+    """Digests of the questions of each group, of its answers together, and of each of its answers.
+
+    ``only`` is how the names of the groups begin.
+    """
     prints: dict[str, dict[str, Any]] = {}
-    for name, ask in track(list(groups(scale)), "groups", transient=True):
+    asked = [(name, ask) for name, ask in groups(scale) if name.startswith(only)]
+    for name, ask in track(asked, "groups", transient=True):
         try:
             answers = list(ask())
         except mik.MetaIKError as error:  # a robot or scene that this tree does not have
@@ -159,12 +163,10 @@ def fingerprint(scale: float) -> dict[str, dict[str, Any]]:
 
 
 def differences(ours: dict[str, dict[str, Any]], theirs: dict[str, dict[str, Any]]) -> Iterator[str]:
-    """A line for each group that differs: in how many answers, and which statuses became which."""
-    for name in sorted(ours.keys() | theirs.keys()):
-        one, other = ours.get(name), theirs.get(name)
-        if one is None or other is None:
-            yield f"{name}: only in one of them"
-        elif one["questions"] != other["questions"]:
+    """A line for each group of both that differs: in how many answers, and which statuses became which."""
+    for name in sorted(ours.keys() & theirs.keys()):
+        one, other = ours[name], theirs[name]
+        if one["questions"] != other["questions"]:
             yield f"{name}: other questions"
         elif one["digest"] != other["digest"]:
             yield f"{name}: {_changes(other['answers'], one['answers'])}"
@@ -185,9 +187,12 @@ def main() -> None:
     parser.add_argument("out", type=Path, help="JSON file for the digests; not computed anew with --against if there")
     parser.add_argument("--against", type=Path, help="JSON file of another tree, to compare with")
     parser.add_argument("--scale", type=float, default=1.0, help="share of the questions of each group")
+    parser.add_argument("--only", default="", help="beginning of the names of the groups to ask, such as world/")
     arguments = parser.parse_args()
     if arguments.against is None or not arguments.out.exists():
-        arguments.out.write_text(json.dumps(fingerprint(arguments.scale), indent=0) + "\n", encoding="utf-8")
+        arguments.out.write_text(
+            json.dumps(fingerprint(arguments.scale, arguments.only), indent=0) + "\n", encoding="utf-8"
+        )
     ours = json.loads(arguments.out.read_text(encoding="utf-8"))
     print(f"{sum(len(group['answers']) for group in ours.values()):,} answers in {len(ours)} groups")
     if arguments.against is not None:

@@ -121,7 +121,7 @@ def names_of(model: pin.Model, drivers: list[int], parts: dict[int, Parts]) -> t
 
 
 def limits_of(model: pin.Model, drivers: list[int], parts: dict[int, Parts], mimicked: set[int]) -> Limits:
-    """Their limits; those ``mimicked`` do not wind, for the joints that follow them might not."""
+    """Limits of the driving joints. A ``mimicked`` joint is not multi-turn, because its followers may not be."""
     lower, upper, velocity, turns, winds = list[float](), list[float](), list[float](), list[bool](), list[bool]()
     for j in drivers:
         entry, rotates = int(model.joints[j].idx_q), {m.part: m.rotates for m in reversed(parts[j].motions)}
