@@ -556,6 +556,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "apart": 0.01,
         "solver": None,
         "budget": FEW,
+        "certify": True,
         "world": None,
         "rng": 0,
         "watch": None,

@@ -61,6 +61,13 @@ def complex_scratch() -> ComplexScratch:
 
 
 @inline
+def reciprocal(z: complex) -> complex:
+    """1 / z; not finite where z is 0, which a division would raise an error for."""
+    scale = 1.0 / (z.real * z.real + z.imag * z.imag)
+    return complex(z.real * scale, -z.imag * scale)
+
+
+@inline
 def cosine_sine(x: complex) -> tuple[complex, complex]:
     """Cosine and sine of a complex angle."""
     c, s = math.cos(x.real), math.sin(x.real)

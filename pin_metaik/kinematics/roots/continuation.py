@@ -22,6 +22,7 @@ from pin_metaik.kinematics.roots.complex_arm import (
     cosine_sine,
     newton,
     place,
+    reciprocal,
     solve_twists,
 )
 
@@ -65,7 +66,8 @@ def series(t: complex) -> tuple[complex, complex, complex]:
             1.0 / 6.0 - z / 120.0 * (1.0 - z / 42.0),
         )
     cos, sin = cosine_sine(t)
-    return sin / t, (1.0 - cos) / z, (1.0 - sin / t) / z
+    A, inverse = sin * reciprocal(t), reciprocal(z)
+    return A, (1.0 - cos) * inverse, (1.0 - A) * inverse
 
 
 @shared
@@ -80,13 +82,14 @@ def screw_between(start: Complexes, end: Complexes, twist: Complexes) -> None:
     i = E[6] * S[6] + E[7] * S[7] + E[8] * S[8]
     t = cmath.acos(0.5 * (a + e + i - 1.0))
     A, B, _ = series(t)
-    wx, wy, wz = 0.5 * (h - f) / A, 0.5 * (c - g) / A, 0.5 * (d - b) / A
+    half = 0.5 * reciprocal(A)
+    wx, wy, wz = half * (h - f), half * (c - g), half * (d - b)
     px = E[9] - (a * S[9] + b * S[10] + c * S[11])
     py = E[10] - (d * S[9] + e * S[10] + f * S[11])
     pz = E[11] - (g * S[9] + h * S[10] + i * S[11])
     # The inverse of what takes v to the translation of exp(V): 1 - w / 2 + (1 - A / 2B) / t^2 w^2.
     z = t * t
-    K = (1.0 - 0.5 * A / B) / z if abs(z.real) + abs(z.imag) > 1e-4 else 1.0 / 12.0 + z / 720.0
+    K = (1.0 - 0.5 * A * reciprocal(B)) * reciprocal(z) if abs(z.real) + abs(z.imag) > 1e-4 else 1.0 / 12.0 + z / 720.0
     cx, cy, cz = wy * pz - wz * py, wz * px - wx * pz, wx * py - wy * px
     twist[0] = px - 0.5 * cx + K * (wy * cz - wz * cy)
     twist[1] = py - 0.5 * cy + K * (wz * cx - wx * cz)

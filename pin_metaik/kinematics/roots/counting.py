@@ -31,6 +31,7 @@ from pin_metaik.kinematics.roots.complex_arm import (
     is_among,
     linked,
     place,
+    reciprocal,
 )
 
 ROUNDING = 1e-14  # of a pose, by the sum of the condition numbers of its factors
@@ -58,7 +59,7 @@ def invert(A: Complexes) -> bool:
             return False
         for j in range(12):
             A[k, j], A[pivot, j] = A[pivot, j], A[k, j]
-        scale = 1.0 / A[k, k]
+        scale = reciprocal(complex(A[k, k]))
         for j in range(12):
             A[k, j] *= scale
         for r in range(6):

@@ -29,7 +29,7 @@ import numpy as np
 from pin_metaik.compiled import Floats, Ints, allocating, inline, shared
 from pin_metaik.kinematics.kernel.closed_form import Vector
 from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE, SHIFT
-from pin_metaik.kinematics.roots.complex_arm import WORLD, ComplexArm, Complexes, carried, linked
+from pin_metaik.kinematics.roots.complex_arm import WORLD, ComplexArm, Complexes, carried, linked, reciprocal
 
 Line: TypeAlias = tuple[Vector, Vector]  # a direction along it, and a point on it
 Motion: TypeAlias = tuple[float, float, float]  # cosine and sine of a turn, length of a slide
@@ -382,14 +382,14 @@ def newton_step(h: Complexes, x: complex) -> complex:
         for j in range(n - 1, -1, -1):
             derivative = derivative * x + p
             p = p * x + coefficient(h, j)
-        return p / derivative if derivative != 0.0 else complex(0.1, 0.0)
-    y = 1.0 / x
+        return p * reciprocal(derivative) if derivative != 0.0 else complex(0.1, 0.0)
+    y = reciprocal(x)
     p = coefficient(h, 0)
     for j in range(1, n + 1):
         derivative = derivative * y + p
         p = p * y + coefficient(h, j)
     rest = n * p - y * derivative
-    return x * p / rest if rest != 0.0 else complex(0.1, 0.0)
+    return x * p * reciprocal(rest) if rest != 0.0 else complex(0.1, 0.0)
 
 
 @shared
@@ -406,10 +406,9 @@ def aberth(h: Complexes, z: Complexes) -> None:
             pushed = complex(0.0, 0.0)
             for j in range(ROOTS):
                 if j != k and z[j] != x:
-                    u = x - z[j]
-                    pushed += u.conjugate() / (u.real * u.real + u.imag * u.imag)
+                    pushed += reciprocal(x - z[j])
             q = 1.0 - w * pushed
-            step = w / q if q != 0.0 else w
+            step = w * reciprocal(q) if q != 0.0 else w
             z[k] = x - step
             square = step.real * step.real + step.imag * step.imag
             most = max(most, square / max(x.real * x.real + x.imag * x.imag, 1e-6))
@@ -432,7 +431,7 @@ def null_vector(M: Complexes, swaps: Ints, v: Complexes) -> None:
                 M[k, j], M[pivot, j] = M[pivot, j], M[k, j]
         if largest < 1e-36:
             M[k, k] = complex(1e-18, 0.0)
-        inverse = 1.0 / M[k, k]
+        inverse = reciprocal(complex(M[k, k]))
         for r in range(k + 1, 12):
             if M[r, k] != 0.0:
                 M[r, k] *= inverse
@@ -450,10 +449,10 @@ def null_vector(M: Complexes, swaps: Ints, v: Complexes) -> None:
         for k in range(11, -1, -1):
             for j in range(k + 1, 12):
                 v[k] -= M[k, j] * v[j]
-            v[k] /= M[k, k]
+            v[k] *= reciprocal(complex(M[k, k]))
             largest = max(largest, abs(v[k].real), abs(v[k].imag))
         for k in range(12):
-            v[k] /= largest
+            v[k] *= 1.0 / largest
 
 
 @inline
@@ -461,7 +460,7 @@ def angle_of(c: complex, s: complex) -> complex:
     """The complex angle with this cosine and sine."""
     u, w = c + 1j * s, c - 1j * s
     u_square, w_square = u.real * u.real + u.imag * u.imag, w.real * w.real + w.imag * w.imag
-    if u_square == 0.0 and w_square == 0.0:
+    if not u_square + w_square > 0.0:
         return complex(0.0, 0.0)
     return -1j * cmath.log(u) if u_square > w_square else 1j * cmath.log(w)
 
@@ -470,10 +469,10 @@ def angle_of(c: complex, s: complex) -> complex:
 def value_of(turns: int, p: complex, q: complex) -> tuple[complex, complex, complex]:
     """A joint's value with x = p / q, and the two functions of it: cosine and sine, or square and value."""
     if turns == 1:
-        n = p * p + q * q
-        c, s = (q * q - p * p) / n, 2.0 * p * q / n
+        n = reciprocal(p * p + q * q)
+        c, s = (q * q - p * p) * n, 2.0 * p * q * n
         return angle_of(c, s), c, s
-    t = p / q
+    t = p * reciprocal(q)
     return t, t * t, t
 
 
@@ -491,7 +490,7 @@ def values_of(z: complex, work: EliminationScratch, values: Complexes) -> None:
     p, q = (v[k], v[k - 1]) if k % 3 > 0 else (v[k + 1], v[k])
     values[4], e0, e1 = value_of(turns[4], p, q)
     values[2] = -1j * cmath.log(z)
-    c0, c1 = 0.5 * (z + 1.0 / z), -0.5j * (z - 1.0 / z)
+    c0, c1 = 0.5 * (z + reciprocal(z)), -0.5j * (z - reciprocal(z))
     for r in range(LEFT - 1, -1, -1):
         m[r] = complex(0.0, 0.0)
         for i in range(3):
@@ -501,7 +500,7 @@ def values_of(z: complex, work: EliminationScratch, values: Complexes) -> None:
                 m[r] += part * (c0 if i == 0 else c1 if i == 1 else 1.0)
         for j in range(r + 1, LEFT):
             m[r] -= X[r, j] * m[j]
-        m[r] = m[r] / X[r, r] if abs(X[r, r]) > 1e-12 else complex(0.0, 0.0)
+        m[r] = m[r] * (1.0 / X[r, r]) if abs(X[r, r]) > 1e-12 else complex(0.0, 0.0)
     # The products are numbered 3 a + b, and the third function of each is 1.
     values[0] = angle_of(m[2], m[5]) if turns[0] == 1 else m[5]
     values[1] = angle_of(m[6], m[7]) if turns[1] == 1 else m[7]
@@ -535,7 +534,7 @@ def find_zeros(arm: ComplexArm, target: Floats, number: int, work: EliminationSc
 @shared
 def coordinates_of(arm: ComplexArm, z: complex, work: EliminationScratch, values: Complexes, x: Complexes) -> bool:
     """Coordinates x (6,) of a zero; False if they are no numbers. ``values`` (6,) is room."""
-    c, s = 0.5 * (z + 1.0 / z), -0.5j * (z - 1.0 / z)
+    c, s = 0.5 * (z + reciprocal(z)), -0.5j * (z - reciprocal(z))
     if abs(z.real * z.real + z.imag * z.imag - 1.0) < ON_CIRCLE:
         c, s = complex(c.real, 0.0), complex(s.real, 0.0)
     lay_matrix(work.reduced, c, s, work.complex)
@@ -544,7 +543,7 @@ def coordinates_of(arm: ComplexArm, z: complex, work: EliminationScratch, values
     finite = True
     for i in range(6):
         row = work.rows[i]
-        value = (values[i] - arm.joints[row, SHIFT]) / arm.joints[row, SCALE]
+        value = (values[i] - arm.joints[row, SHIFT]) * (1.0 / arm.joints[row, SCALE])
         x[arm.wiring[row, COLUMN]] = value
         finite = finite and math.isfinite(value.real) and abs(value.imag) < 30.0
     return finite
