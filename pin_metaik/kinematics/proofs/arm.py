@@ -106,6 +106,18 @@ class ProofArm:
         return replace(self, arrays=(joints, wiring, knots, tip, lower, upper, reach, 2 * wrist))
 
     @property
+    def wrist(self) -> Ints:
+        """(3,) coordinates of a wrist that is the chain's own and never split; (0,) if there is none."""
+        columns = self.arrays[1][-3:, COLUMN]
+        return columns if self.arrays[7][0] and columns.max() < self.n else columns[:0]
+
+    def bent(self, side: int) -> ProofArm:
+        """The same arm with its wrist bent to one side, 0 or 1; see ``BoxArm``."""
+        from pin_metaik.kinematics.proofs.box import BENT
+
+        return replace(self, arrays=(*self.arrays[:7], np.array([BENT[side]])))
+
+    @property
     def movers(self) -> int:
         """How many of the chain's coordinates move the tip."""
         return int((np.unique(self.arrays[1][:, 0]) < self.n).sum())

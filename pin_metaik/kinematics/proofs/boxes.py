@@ -58,6 +58,12 @@ class Boxes:
         part._waiting[0], part._count = box, 1
         return part
 
+    def bent(self, side: int) -> Boxes:
+        """The same with the wrist bent to one side; see ``ProofArm.bent``."""
+        part = copy(self)
+        part.arm, part._waiting = self.arm.bent(side), self._waiting.copy()
+        return part
+
     @property
     def done(self) -> bool:
         """Whether no box is left to look at: what was not kept is proved to hold no solution."""
