@@ -14,16 +14,18 @@ from numpy.typing import ArrayLike
 from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
 from pin_metaik.collision import CollisionWorld
-from pin_metaik.errors import InvalidConfiguration, InvalidSetting, UnknownName
-from pin_metaik.ik.criteria import CRITERIA
+from pin_metaik.errors import InvalidConfiguration, InvalidSetting
+from pin_metaik.ik.criteria import Criterion, measure_of
 from pin_metaik.ik.problem import IKProblem, check_world
 from pin_metaik.optimize.settings import positive
 
-Criterion: TypeAlias = str | Callable[[Array], float]
 Values: TypeAlias = Callable[[Array], Array]  # of coordinates (k, n)
 
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
-NEAR, SHARP = 1e-4, 1e-8  # how far a least value may be off before it is sharpened; width of its interval then, rad or m
+NEAR, SHARP = (
+    1e-4,
+    1e-8,
+)  # how far a least value may be off before it is sharpened; width of its interval then, rad or m
 BISECTIONS = 20  # of the place where a curve runs into an obstacle
 
 
@@ -109,8 +111,8 @@ class SelfMotionCurve:
             InvalidSetting: If t is not finite.
         """
         places = array("t", t, "...", error=InvalidSetting)
-        x = self._at(np.atleast_1d(places).ravel())
-        return self._configurations(x).reshape(*places.shape, -1)
+        X = self._turned(self._at(np.atleast_1d(places).ravel()))
+        return self.problem.chain.q(X, self.base).reshape(*places.shape, -1)
 
     def sample(self, step: float) -> Array:
         """Configurations (k, nq), at most ``step`` (rad and m alike) of joint motion from one to the next.
@@ -127,36 +129,23 @@ class SelfMotionCurve:
         It is the nearest of the whole curve, to 1e-4: a distance changes by no more than the joints move.
         """
         x = self.problem.chain.x(array("q", q, self.problem.chain.model.nq, error=InvalidConfiguration))
-        winds = self.problem.limits.winds
+        measure = measure_of("nearest")
+        return self._least(lambda X: measure(self.problem, X, x), 1.0)
 
-        def distances(X: Array) -> Array:
-            ways = X - x
-            ways = np.where(winds, ways - 2.0 * np.pi * np.round(ways / (2.0 * np.pi)), ways)
-            found: Array = np.linalg.norm(ways, axis=1)
-            return found
-
-        return self._least(distances, 1.0)
-
-    def best(self, criterion: Criterion) -> CurvePoint:
+    def best(self, criterion: str | Criterion) -> CurvePoint:
         """The point where a criterion is least.
 
         Args:
-            criterion: ``"nearest"`` to ``q0``, farthest from the ``"limits"``, of greatest ``"manipulability"``, of least
-                gravity ``"torque"``; or a function of a configuration (nq,), to be least. Of the first two the least
-                value of the whole curve is found; the others are looked at in every point ``x``, and sharpened at each
-                that is lower than its neighbours.
+            criterion: As for ``IKSolver.select``: a name, or a function of a configuration (nq,). For ``"nearest"`` (to
+                ``q0``) and ``"limits"`` it is the best of the whole curve, to 1e-4; others are looked at in every point
+                ``x``, and between the neighbours of each that is better than these.
 
         Raises:
             UnknownName: No criterion of that name.
+            InvalidSetting: The function gives no number.
         """
-        if callable(criterion):
-            return self._least(lambda X: np.array([float(criterion(q)) for q in self._configurations(X)]), None)
-        if criterion == "nearest":
-            return self.nearest(self.base)
-        if criterion not in CRITERIA:
-            raise UnknownName("criterion", criterion, {"nearest", *CRITERIA})
-        known = CRITERIA[criterion]
-        return self._least(lambda X: known.values(self.problem, X), known.rate(self.problem))
+        measure = measure_of(criterion)
+        return self._least(lambda X: measure(self.problem, self._turned(X), self._x0), self._rate(criterion))
 
     def free(self, world: CollisionWorld, step: float = 0.02) -> list[tuple[float, float]]:
         """Intervals (from, to) of t without a collision, as far as points at most ``step`` apart show.
@@ -191,11 +180,17 @@ class SelfMotionCurve:
             found.append((float(begin), self.length))
         return found
 
-    def _configurations(self, X: Array) -> Array:
-        """Configurations (k, nq) of coordinates (k, n), inside the limits."""
-        chain = self.problem.chain
-        near = chain.limits.nearest_turns(chain.limits.clip(X) if not chain.limits.winds.any() else X, self._x0)
-        return chain.q(near, self.base)
+    def _turned(self, X: Array) -> Array:
+        """Coordinates (k, n) inside the limits, angles on a circle as the copy nearest to ``q0``."""
+        return self.problem.limits.nearest_turns(X, self._x0)
+
+    def _rate(self, criterion: str | Criterion) -> float | None:
+        """How much a criterion changes at most for each unit of joint motion; None: nothing is known."""
+        if criterion == "nearest":
+            return 1.0
+        limits = self.problem.limits
+        spans = (limits.upper - limits.lower)[np.isfinite(limits.upper - limits.lower) & ~limits.winds]
+        return 2.0 / float(spans.min()) if criterion == "limits" and len(spans) and not limits.winds.any() else None
 
     @cached_property
     def _x0(self) -> Array:
@@ -213,37 +208,41 @@ class SelfMotionCurve:
         X = a + s * (u + s * (3.0 * (b - a) - 2.0 * u - v + s * (u + v - 2.0 * (b - a))))
         across = np.where(s < 0.5, self._tangents[i], self._tangents[i + 1])
         problem = self.problem
-        put_back(problem.chain.bare, problem.tasks, problem.descended, X, across)
+        put_back(problem.chain.bare, problem.records, problem.kernel_rows, X, across)
         return X
 
     def _least(self, values: Values, rate: float | None) -> CurvePoint:
         """Where values are least; ``rate`` bounds how much they change for each unit of t, None: nothing does."""
-        known = values(self.x)
-        if rate is None:
-            lower = np.pad(known, 1, mode="wrap" if self.closed else "constant", constant_values=np.inf) if False else known
-            left, right = np.append(np.inf, lower[:-1]), np.append(lower[1:], np.inf)
-            low = np.flatnonzero((known <= left) & (known <= right))
-            spans = [(self.t[max(i - 1, 0)], self.t[min(i + 1, len(known) - 1)]) for i in low]
-            found = [self._sharpened(values, *span) for span in spans]
-        else:
-            a, b, fa, fb = self.t[:-1], self.t[1:], known[:-1], known[1:]
-            best = known.min()
-            at = float(self.t[np.argmin(known)])
-            while True:
-                hopeful = 0.5 * (fa + fb - rate * (b - a)) < best - NEAR
-                a, b, fa, fb = a[hopeful], b[hopeful], fa[hopeful], fb[hopeful]
-                if not len(a):
-                    break
-                middle = 0.5 * (a + b)
-                f = values(self._at(middle))
-                if f.min() < best:
-                    best, at = float(f.min()), float(middle[np.argmin(f)])
-                a, b = np.append(a, middle), np.append(middle, b)
-                fa, fb = np.append(fa, f), np.append(f, fb)
-            width = 0.5 * float(np.diff(self.t).max())
-            found = [(at, float(best)), self._sharpened(values, max(at - width, 0.0), min(at + width, self.length))]
-        t, value = min(found, key=lambda place: place[1])
+        spans = self._lows(values) if rate is None else self._below(values, rate)
+        t, value = min((self._sharpened(values, *span) for span in spans), key=lambda place: place[1])
         return CurvePoint(t, self.q(t), value)
+
+    def _lows(self, values: Values) -> list[tuple[float, float]]:
+        """The spans round each point whose value is no greater than its neighbours'."""
+        known = values(self.x)
+        left, right = np.append(np.inf, known[:-1]), np.append(known[1:], np.inf)
+        last = len(known) - 1
+        lows = np.flatnonzero((known <= left) & (known <= right))
+        return [(float(self.t[max(i - 1, 0)]), float(self.t[min(i + 1, last)])) for i in lows]
+
+    def _below(self, values: Values, rate: float) -> list[tuple[float, float]]:
+        """A span round the least value: others cannot be less by more than NEAR (Piyavskii 1972)."""
+        f = values(self.x)
+        a, b, fa, fb = self.t[:-1], self.t[1:], f[:-1], f[1:]
+        best, at = float(f.min()), float(self.t[np.argmin(f)])
+        while True:
+            hopeful = 0.5 * (fa + fb - rate * (b - a)) < best - NEAR
+            a, b, fa, fb = a[hopeful], b[hopeful], fa[hopeful], fb[hopeful]
+            if not len(a):
+                break
+            middle = 0.5 * (a + b)
+            f = values(self._at(middle))
+            if f.min() < best:
+                best, at = float(f.min()), float(middle[np.argmin(f)])
+            a, b = np.append(a, middle), np.append(middle, b)
+            fa, fb = np.append(fa, f), np.append(f, fb)
+        width = min(float(np.diff(self.t).max()), 2.0 * NEAR / rate + 1e-3)
+        return [(max(at - width, 0.0), min(at + width, self.length))]
 
     def _sharpened(self, values: Values, a: float, b: float) -> tuple[float, float]:
         """Where values are least between a and b, by golden sections, and how much they are there."""

@@ -28,6 +28,7 @@ BARREN, ROUNDS = 8, 100  # rounds that must bring nothing new before all are kno
 POSES, GOOD = 8, 0.5  # that loops are tried on; share of the roots that one must find to be used
 LOOPS = 12
 SAME = 1e-6  # rad or lengths: two nearer than this are one
+REAL = 1e-7  # imaginary part that is rounding
 NEARLY = 0.05  # imaginary part of what may be real where rounding, or a tolerance, makes two of one
 BEYOND = 1e-3  # rad or m outside a limit, from where a descent may still end inside
 TURN = 2.0 * np.pi
@@ -51,13 +52,16 @@ class Configurations:
     proved: bool
     evaluations: int
 
-    def starts(self, limits: Limits, x0: Array) -> Array:
-        """(s, 6) where descents inside the limits should start: at what is real, or nearly.
+    def inside(self, limits: Limits, x0: Array) -> tuple[Array, Array]:
+        """(r, 6) those that are real and inside the limits; (s, 6) from where descents may end inside, too.
 
-        Of copies by whole turns that count as one solution it is the one nearest to x0 (6,).
+        Of copies by whole turns that count as one it is the one nearest to x0 (6,).
         """
-        x = self.x[np.abs(self.x.imag).max(axis=1, initial=0.0) < NEARLY].real
-        return copies_inside(np.concatenate([x, self.nearly.real]), limits, x0)
+        off = np.abs(self.x.imag).max(axis=1, initial=0.0)
+        real = copies_inside(self.x[off < REAL].real, limits, x0)
+        kept = ((limits.lower <= real) & (limits.upper >= real)).all(axis=1)
+        nearly = np.concatenate([self.x[(off >= REAL) & (off < NEARLY)].real, self.nearly.real])
+        return real[kept], np.concatenate([real[~kept], copies_inside(nearly, limits, x0)])
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,8 @@
 """Following a self-motion: the curve of configurations that meet a target, where there is one coordinate too many.
 
-Steps along the tangent, with the bend of the last one, are put back by Newton's method on the targets and a plane across
-the tangent (Allgower and Georg, "Introduction to numerical continuation methods", 2003, chapter 2). A curve ends where
-a coordinate meets a limit, exactly there, or comes back to where it began.
+Steps along the tangent, with the bend of the last one, are put back by Newton's method on the targets and a plane
+across the tangent (Allgower and Georg, "Introduction to numerical continuation methods", 2003, chapter 2). A curve ends
+where a coordinate meets a limit, exactly there, or comes back to where it began.
 """
 
 from __future__ import annotations
@@ -13,8 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, allocating, inline, jit, shared
-from pin_metaik.kinematics.kernel.closed_form import cross, dot, vector
-from pin_metaik.kinematics.kernel.forward import FULL_TURN, IDENTITY, copy, forward, sizes_of, unpack
+from pin_metaik.kinematics.kernel.forward import FULL_TURN, copy, sizes_of, unpack
 from pin_metaik.kinematics.kernel.goals import evaluate, evaluate_pose
 from pin_metaik.kinematics.kernel.layout import Arm, Bounds
 from pin_metaik.kinematics.kernel.scratch import Scratch, scratch_for
@@ -187,7 +186,7 @@ def comes_back(x: Floats, before: Floats, first: Floats, start: Floats, periodic
 
 @shared
 def trace_from(
-    arm: Arm,
+    block: Floats,
     goals: Floats,
     rows: Ints | None,
     bounds: Bounds,
@@ -200,7 +199,7 @@ def trace_from(
     work: Scratch,
 ) -> tuple[int, int, int, int]:
     """``trace`` in room that was made for it."""
-    n, spent, periodic = x0.shape[0], 0, bounds.winds
+    arm, n, spent, periodic = unpack(block).arm, x0.shape[0], 0, bounds.winds
     tangent, before, trial = curve.tangent, curve.before, curve.trial
     for c in range(n):
         points[0, c], tangent[c] = x0[c], way * tangents[0, c]
@@ -297,17 +296,17 @@ def trace(
         upper one; evaluations.
     """
     S, n, _ = sizes_of(block)
-    arm, bounds = unpack(block).arm, Bounds(lower, upper, periodic)
     curve, work = curve_scratch(n), scratch_for(n, rows, S)
-    return trace_from(arm, goals, rows, bounds, x0, way, longest, points, tangents, curve, work)
+    bounds = Bounds(lower, upper, periodic)
+    return trace_from(block, goals, rows, bounds, x0, way, longest, points, tangents, curve, work)
 
 
 @shared
 def put_all(
-    arm: Arm, goals: Floats, rows: Ints | None, X: Floats, tangents: Floats, curve: CurveScratch, work: Scratch
+    block: Floats, goals: Floats, rows: Ints | None, X: Floats, tangents: Floats, curve: CurveScratch, work: Scratch
 ) -> int:
     """``put_back`` in room that was made for it."""
-    good = 0
+    arm, good = unpack(block).arm, 0
     for k in range(X.shape[0]):
         copy(tangents[k], curve.tangent)
         first, _ = put_on_curve(arm, goals, rows, X[k], curve.tangent, math.nan, curve, work)
@@ -321,20 +320,4 @@ def put_all(
 def put_back(block: Floats, goals: Floats, rows: Ints | None, X: Floats, tangents: Floats) -> int:
     """Put coordinates X (k, n) onto the curve, across directions (k, n) that become tangents; how many arrive."""
     S, n, _ = sizes_of(block)
-    return put_all(unpack(block).arm, goals, rows, X, tangents, curve_scratch(n), scratch_for(n, rows, S))
-
-
-@inline
-def bend_all(joints: Floats, wiring: Ints, tip: Floats, X: Floats, out: Floats, room: Floats, pose: Floats) -> None:
-    """``bends`` in room that was made for it."""
-    S = joints.shape[0]
-    axes, origins = room[:S], room[S:]
-    for k in range(X.shape[0]):
-        forward(joints, wiring, 0, S, tip, IDENTITY, X[k], axes, origins, pose)
-        out[k] = dot(vector(axes[S - 3]), cross(vector(axes[S - 2]), vector(axes[S - 1])))
-
-
-@jit("void(f8[:,::1], i8[:,::1], f8[::1], f8[:,::1], f8[::1])")
-def bends(joints: Floats, wiring: Ints, tip: Floats, X: Floats, out: Floats) -> None:
-    """Triple product (k,) of the last three axes at coordinates X (k, n): its sign says how a wrist is bent."""
-    bend_all(joints, wiring, tip, X, out, np.empty((2 * joints.shape[0], 3)), np.empty(12))
+    return put_all(block, goals, rows, X, tangents, curve_scratch(n), scratch_for(n, rows, S))

@@ -143,4 +143,4 @@ def test_a_configuration_comes_as_its_copies_inside_the_limits() -> None:
     assert len(copies_inside(x, limits(0.3, 8.0, False, False), x[0])) == 0
     assert_allclose(copies_inside(x, limits(0.1005, 8.0, False, False), x[0]), x)  # a descent may still end inside
     none = Configurations(np.empty((0, 6), np.complex128), np.empty((0, 6), np.complex128), False, False, 0)
-    assert none.starts(limits(-1.0, 1.0, True, False), np.zeros(6)).shape == (0, 6)
+    assert [part.shape for part in none.inside(limits(-1.0, 1.0, True, False), np.zeros(6))] == [(0, 6), (0, 6)]
