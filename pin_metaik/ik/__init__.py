@@ -3,11 +3,13 @@
 from pin_metaik.ik import goals
 from pin_metaik.ik.batch import IKBatch, solve_ik_batch
 from pin_metaik.ik.goals.pose import Target
+from pin_metaik.ik.gravity import gravity_torque
 from pin_metaik.ik.path import IKPath, solve_ik_path
 from pin_metaik.ik.problem import IKProblem, Verdict
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.refine import DLS, REFINERS, Refinement, Refiner
 from pin_metaik.ik.result import IKResult, IKStatus
+from pin_metaik.ik.self_motion import SelfMotionCurve, SelfMotions, self_motions
 from pin_metaik.ik.solutions import IKSolutions, solve_ik_all
 from pin_metaik.ik.solve import solve_ik
 from pin_metaik.ik.solver import IKSolver
@@ -25,9 +27,13 @@ __all__ = [
     "Proof",
     "Refinement",
     "Refiner",
+    "SelfMotionCurve",
+    "SelfMotions",
     "Target",
     "Verdict",
     "goals",
+    "gravity_torque",
+    "self_motions",
     "solve_ik",
     "solve_ik_all",
     "solve_ik_batch",

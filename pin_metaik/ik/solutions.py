@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from time import perf_counter
 from typing import Any
 
@@ -16,6 +17,14 @@ from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.collect import collect
 from pin_metaik.ik.problem import Asked, IKProblem
 from pin_metaik.ik.proof import Proof
+from pin_metaik.ik.self_motion.curve import SelfMotionCurve
+from pin_metaik.ik.self_motion.motions import (
+    MOTION_BUDGET,
+    RESOLUTION,
+    exactly,
+    find_self_motions,
+    has_curves,
+)
 from pin_metaik.ik.solver import APART, DEFAULT_SOLVER, IKSolver
 from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Budget
@@ -36,7 +45,8 @@ class IKSolutions:
         complete: What proves that these are all, each to within the distance between distinct solutions: the branches
             of the arm's closed form, the number of its configurations, real and complex, or boxes that cover all
             configurations; ``None`` where nothing does, as on a chain with more joints than its target needs, in a
-            singularity, or where tolerances leave room for more than one answer. What meets the tolerances but not the pose exactly counts only where nothing near it does.
+            singularity, or where tolerances leave room for more than one answer. What meets the tolerances but not the
+            pose exactly counts only where nothing near it does.
         evaluations: Forward kinematics computed.
         seconds: Time taken, s.
         problem: What was asked; out of a pickle, without its world, which has all meshes in it.
@@ -53,6 +63,18 @@ class IKSolutions:
     def __getstate__(self) -> dict[str, object]:
         """Pickle without the world: kilobytes rather than megabytes."""
         return {**self.__dict__, "problem": replace(self.problem, world=None)}
+
+    @cached_property
+    def curves(self) -> tuple[SelfMotionCurve, ...]:
+        """All self-motions of a chain with one spare coordinate, the longest first; found when first asked for.
+
+        See ``self_motions``, which also says whether they are proved to be all, and takes a resolution and a budget.
+        There are none where solutions are separate, or have more than one degree of freedom: those are sampled in q.
+        """
+        problem = replace(exactly(self.problem), world=None)
+        if not has_curves(problem):
+            return ()
+        return find_self_motions(problem, problem.chain.reference, RESOLUTION, MOTION_BUDGET).curves
 
     @property
     def x(self) -> NDArray[np.float64]:

@@ -25,6 +25,7 @@ from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine import DLS, Refinement, Refiner, make_refiner
 from pin_metaik.ik.refine.descent import Descent, descent_of
 from pin_metaik.ik.result import IKResult, IKStatus
+from pin_metaik.ik.self_motion.motions import RESOLUTION, exactly, find_self_motions, has_curves
 from pin_metaik.ik.starts import start_batches
 from pin_metaik.ik.state import ENDLESS, SearchState
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
@@ -204,6 +205,12 @@ class IKSolver:
         """
         x0 = problem.chain.x(base)
         budget = Budget(evaluations=max(1, state.left(CHOICE_SHARE)), seconds=self.budget.seconds)
+        if problem.world is None and has_curves(problem):
+            motions = find_self_motions(exactly(problem), base, RESOLUTION, budget)
+            state.spent += motions.evaluations
+            if motions.complete is not None and len(motions):
+                state.x, state.met = problem.chain.x(motions.best(self.select).q), True
+                return
         problem, found, complete, spent = collect(
             problem, x0, self.descent, rng, limit=CHOICE, apart=APART, budget=budget
         )

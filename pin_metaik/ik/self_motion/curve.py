@@ -6,12 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pin_metaik.arguments import array, checked
+from pin_metaik.arguments import array
 from pin_metaik.arrays import Array
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting
@@ -71,10 +71,9 @@ class CurvePoint(NamedTuple):
     value: float
 
 
-@checked
 @dataclass(frozen=True, eq=False)
 class SelfMotionCurve:
-    """All solutions that a chain with one spare degree of freedom reaches from one of them while its frame stands still.
+    """All solutions that a chain with one spare degree of freedom reaches while its frame stands still.
 
     A connected component of the self-motion manifold (Burdick 1989) inside the limits. Coordinates whose limits leave
     room for a whole turn are taken as angles on a circle: they end no curve, and come as the copy nearest to ``q0``.
@@ -93,6 +92,11 @@ class SelfMotionCurve:
     t: Array = field(repr=False)
     ends: tuple[CurveEnd, CurveEnd]
     _tangents: Array = field(repr=False)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON: configurations of the points, lengths in m, angles in rad."""
+        ends = [{"reason": end.reason.value, "joint": end.joint, "upper": end.upper} for end in self.ends]
+        return {"q": self.q(self.t).tolist(), "t": self.t.tolist(), "ends": ends}
 
     @property
     def closed(self) -> bool:
@@ -182,7 +186,8 @@ class SelfMotionCurve:
 
     def _turned(self, X: Array) -> Array:
         """Coordinates (k, n) inside the limits, angles on a circle as the copy nearest to ``q0``."""
-        return self.problem.limits.nearest_turns(X, self._x0)
+        limits = self.problem.limits
+        return np.where(limits.winds, limits.nearest_turns(X, self._x0), limits.clip(X))
 
     def _rate(self, criterion: str | Criterion) -> float | None:
         """How much a criterion changes at most for each unit of joint motion; None: nothing is known."""
@@ -214,7 +219,7 @@ class SelfMotionCurve:
     def _least(self, values: Values, rate: float | None) -> CurvePoint:
         """Where values are least; ``rate`` bounds how much they change for each unit of t, None: nothing does."""
         spans = self._lows(values) if rate is None else self._below(values, rate)
-        t, value = min((self._sharpened(values, *span) for span in spans), key=lambda place: place[1])
+        t, value = min((self._sharpened(values, *span) for span in spans), key=_value)
         return CurvePoint(t, self.q(t), value)
 
     def _lows(self, values: Values) -> list[tuple[float, float]]:
@@ -222,14 +227,14 @@ class SelfMotionCurve:
         known = values(self.x)
         left, right = np.append(np.inf, known[:-1]), np.append(known[1:], np.inf)
         last = len(known) - 1
-        lows = np.flatnonzero((known <= left) & (known <= right))
+        lows = np.flatnonzero((known <= left) & (known <= right)).tolist()
         return [(float(self.t[max(i - 1, 0)]), float(self.t[min(i + 1, last)])) for i in lows]
 
     def _below(self, values: Values, rate: float) -> list[tuple[float, float]]:
         """A span round the least value: others cannot be less by more than NEAR (Piyavskii 1972)."""
         f = values(self.x)
         a, b, fa, fb = self.t[:-1], self.t[1:], f[:-1], f[1:]
-        best, at = float(f.min()), float(self.t[np.argmin(f)])
+        best, at = float(f.min()), float(self.t[int(np.argmin(f))])
         while True:
             hopeful = 0.5 * (fa + fb - rate * (b - a)) < best - NEAR
             a, b, fa, fb = a[hopeful], b[hopeful], fa[hopeful], fb[hopeful]
@@ -238,7 +243,7 @@ class SelfMotionCurve:
             middle = 0.5 * (a + b)
             f = values(self._at(middle))
             if f.min() < best:
-                best, at = float(f.min()), float(middle[np.argmin(f)])
+                best, at = float(f.min()), float(middle[int(np.argmin(f))])
             a, b = np.append(a, middle), np.append(middle, b)
             fa, fb = np.append(fa, f), np.append(f, fb)
         width = min(float(np.diff(self.t).max()), 2.0 * NEAR / rate + 1e-3)
@@ -261,4 +266,8 @@ class SelfMotionCurve:
                 a, c, fc = c, d, fd
                 d = a + GOLDEN * (b - a)
                 fd = value(d)
-        return min(((t, value(t)) for t in (a, b, c, d)), key=lambda place: place[1])
+        return min(((t, value(t)) for t in (a, b, c, d)), key=_value)
+
+
+def _value(place: tuple[float, float]) -> float:
+    return place[1]

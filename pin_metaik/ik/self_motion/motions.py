@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
 
@@ -25,16 +25,18 @@ from pin_metaik.kinematics.proofs.boxes import Boxes
 from pin_metaik.optimize import Budget
 from pin_metaik.optimize.settings import positive
 from pin_metaik.plain import fields_of
+from pin_metaik.randomness import DEFAULT_SEED
 from pin_metaik.watching import Progress, Stopped, Watch, tell
 
-DEFAULT_BUDGET = Budget(evaluations=400_000)
+MOTION_BUDGET = Budget(evaluations=400_000)
+RESOLUTION = 0.2  # rad or m
 EXACT = 1e-9  # m and rad, how closely curves keep to the target
 STEP = 0.05  # rad or m between the points of a curve, at most
 POINTS = 20_000  # of a curve at most
-CHUNK, MOST = 4_096, 16  # boxes looked at, and kept, at a time; and how often
-FINER = 8.0, 64.0  # by how much smaller boxes that are far from all curves are looked at
+CHUNK, MOST = 4_096, 8_192  # boxes looked at, and kept, at a time; kept in all
+FINER = 8.0, 64.0, 512.0  # by how much smaller boxes that are far from all curves are looked at
 SEEDS = 512  # solutions to follow curves from, at a time
-LOOKED_UP = 128  # configurations of the atlas to descend from where there are no boxes
+LOOKED_UP, DRAWN, SEED = 128, 512, (DEFAULT_SEED, 0)  # configurations to descend from where boxes have no end
 SAME = 5e-3  # rad or m: a solution this near to a curve is on it
 STRAIGHT = 1e-2  # triple product of a wrist's axes below which it is bent to neither side
 TURN = 2.0 * np.pi
@@ -90,9 +92,9 @@ class SelfMotions:
         return self.curves
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain values, for JSON: the configurations of each curve's points, lengths in m, angles in rad."""
+        """Plain values, for JSON: lengths in m, angles in rad."""
         plain = fields_of(self, "complete", "resolution", "interrupted", "evaluations", "seconds")
-        return {"curves": [curve.q(curve.t).tolist() for curve in self.curves], **plain}
+        return {"curves": [curve.as_dict() for curve in self.curves], **plain}
 
 
 def _value(point: CurvePoint) -> float:
@@ -105,22 +107,22 @@ def self_motions(
     target: TargetLike | Sequence[TargetLike],
     q0: ArrayLike | None = None,
     *,
-    resolution: float = 0.2,
-    budget: Budget = DEFAULT_BUDGET,
+    resolution: float = RESOLUTION,
+    budget: Budget = MOTION_BUDGET,
     watch: Watch | None = None,
 ) -> SelfMotions:
-    """Find every curve of solutions of a target that leaves the chain one spare degree of freedom.
+    """Find every curve of solutions of a target that leaves a chain one spare degree of freedom.
 
-    Boxes of configurations that are not excluded cover all solutions; a descent from each that no known curve comes near
-    leads to a point of another curve, which is followed both ways to its ends.
+    Boxes of configurations that are not excluded cover all solutions. A descent from each that no known curve comes
+    near leads to a point of another curve, which is followed both ways to its ends.
 
     Args:
         chain: The joints to move and the frame to place.
-        target: As for ``solve_ik``, with one axis less that counts than the chain has coordinates. Curves keep to the
-            middle of its tolerances.
-        q0: (nq,) configuration that has the joints outside the chain and the locked ones, and that copies by whole turns
-            are nearest to; default: the chain's reference.
-        resolution: rad or m; how near to known curves one that is missing must stay. Half of it is a box.
+        target: As for ``solve_ik``, with one axis less that counts than the chain has coordinates. Curves keep to
+            the middle of its tolerances.
+        q0: (nq,) configuration that has the joints outside the chain and the locked ones, and that copies by whole
+            turns are nearest to; default: the chain's reference.
+        resolution: rad or m; how near to known curves one that is missing must stay.
         budget: Evaluations that may be spent, and seconds.
         watch: Called between boxes with evaluations spent and allowed; True ends the search.
 
@@ -196,18 +198,24 @@ class _Search:
         self._upper = np.where(limits.winds, np.inf, limits.upper)
 
     def run(self) -> None:
-        """Cover the limits with boxes, and find the curves that go through those that are kept."""
+        """Cover the limits with boxes, and find the curves that go through those that are kept.
+
+        Where there is no end of boxes, curves are found from an atlas and at random.
+        """
         target, chain = self._problem.targets[0], self._problem.chain
         free = not target.counts[3], not target.counts[4], not target.counts[5]
         near = 0.0 if all(target.counts[:3]) else np.inf
         boxes = None
         if near == 0.0 or sum(free) < 2:
             boxes = chain._boxes(0, target.pose.homogeneous, near, 0.0, free, least=0.5 * self._resolution)
-        if boxes is None:
-            self._from(self._problem.near(LOOKED_UP), self._resolution)
-            return
-        sides: tuple[int | None, ...] = (0, 1) if len(boxes.arm.wrist) else (None,)
-        self.covered = all([self._is_covered(boxes if side is None else boxes.bent(side), side) for side in sides])
+        if boxes is not None:
+            sides: tuple[int | None, ...] = (0, 1) if len(boxes.arm.wrist) else (None,)
+            covered = [self._is_covered(boxes if side is None else boxes.bent(side), side) for side in sides]
+            self.covered = all(covered)
+        if not self.covered:
+            self._from(
+                np.concatenate([self._problem.near(LOOKED_UP), chain.sample(DRAWN, SEED)]), 0.5 * self._resolution
+            )
 
     def _is_covered(self, boxes: Boxes, side: int | None) -> bool:
         """Find the curves of some boxes, with a wrist bent to one side; whether there is one near all that are kept.
@@ -222,11 +230,14 @@ class _Search:
         return far is not None and not len(far)
 
     def _far(self, boxes: Boxes, side: int | None) -> Array | None:
-        """Boxes (k, 2 m) that are kept and near no curve, once those are found that they lead to; None: no end of it."""
-        kept = []
+        """Boxes (k, 2 m) that are kept and near no curve, once those that they lead to are found.
+
+        None, if the budget ends before, or there is no end of them.
+        """
+        kept: list[Array] = []
         while not boxes.done:
             before = boxes.looked
-            if self._left == 0 or perf_counter() > self._until or len(kept) == MOST:
+            if self._left == 0 or perf_counter() > self._until or sum(map(len, kept)) >= MOST:
                 return None
             kept.append(boxes.look(min(CHUNK, self._left), CHUNK))
             self.spent += boxes.looked - before

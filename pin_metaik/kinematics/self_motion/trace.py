@@ -169,6 +169,21 @@ def crossed(x: Floats, bounds: Bounds, before: Floats) -> int:
 
 
 @inline
+def bulges(x: Floats, bounds: Bounds, before: Floats, curve: CurveScratch) -> bool:
+    """Whether a coordinate is beyond a limit somewhere on the way from ``before`` to x (n,), by the tangents there."""
+    found, length = False, 0.0
+    for c in range(x.shape[0]):
+        length += (x[c] - before[c]) ** 2
+    length = math.sqrt(length)
+    for c in range(x.shape[0]):
+        a, b = curve.tangent[c], curve.ahead[c]
+        if a * b < 0.0:  # it turns back: a parabola with these slopes has its vertex there
+            vertex = before[c] + 0.5 * a * a / (a - b) * length
+            found = found or vertex < bounds.lower[c] - INSIDE or vertex > bounds.upper[c] + INSIDE
+    return found
+
+
+@inline
 def comes_back(x: Floats, before: Floats, first: Floats, start: Floats, periodic: Ints, curve: CurveScratch) -> bool:
     """Whether the curve's first point (n,), whole turns aside, lies between two points of it, and it goes on alike."""
     along = off = length = alike = 0.0
@@ -216,12 +231,16 @@ def trace_from(
         alike = 0.0
         for c in range(n):
             alike += tangent[c] * curve.ahead[c]
-        if first > OFF * h or alike < BEND:
+        at = crossed(trial, bounds, here)
+        if (
+            first > OFF * h
+            or alike < BEND
+            or (at < 0 and h > SHORTEST * longest and bulges(trial, bounds, here, curve))
+        ):
             h *= 0.5
-            if h < SHORTEST * longest:
+            if h < 0.5 * SHORTEST * longest:
                 return count, SINGULAR, -1, spent
             continue
-        at = crossed(trial, bounds, here)
         ends = LONG
         if at >= 0:
             beyond = trial[at] < bounds.lower[at]
