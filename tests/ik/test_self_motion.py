@@ -151,7 +151,15 @@ def test_gravity_torque_is_what_the_potential_energy_changes_by() -> None:
     with pytest.raises(InvalidSetting, match="payload"):
         mik.gravity_torque(chain, -1.0)
     with pytest.raises(InvalidSetting, match="no mass"):
-        mik.gravity_torque(chain_of("rv7fl"))
+        mik.gravity_torque(weightless())
+
+
+def weightless() -> mik.Chain:
+    model = pin.Model()
+    span = np.array([1.0])
+    joint = model.addJoint(0, pin.JointModelRX(), pin.SE3.Identity(), "hinge", span, span, -span, span)
+    model.addFrame(pin.Frame("tip", joint, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME))
+    return mik.Chain(model, "tip")
 
 
 def test_a_watch_ends_the_search_and_keeps_what_was_found() -> None:
