@@ -140,7 +140,7 @@ class Collection:
             return False
         self._add_from(starts, len(starts) + 1, branch=False)
         if hidden:
-            return self.known > 0
+            return False
         boxes = exact if len(exact) else whole
         missing = boxes[~self._has_solution(boxes)]
         self._add_from(problem.limits.clip(missing[:, :n]), len(missing) + 1, branch=False)
