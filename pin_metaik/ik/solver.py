@@ -63,8 +63,10 @@ class IKSolver:
             it stops once the tolerances are met.
         starts: How many starts to refine without a seeder; ``None``: until the budget is spent.
         select: ``"first"`` solution found, or of all distinct ones that the budget allows to find, the ``"nearest"`` to
-            ``q0``, the one of best ``"manipulability"``, the one that keeps farthest from the ``"limits"``, or the one
-            for which a function of your own, of a configuration q (nq,), gives the lowest number.
+            ``q0``, the one of best ``"manipulability"``, the one that keeps farthest from the ``"limits"``, the one
+            held with the least ``"torque"`` against gravity, or the one for which a function of your own, of a
+            configuration q (nq,), gives the lowest number. With one spare joint and no world it is the best of all
+            self-motions (see ``self_motions``), where these are proved to be all.
         trace: Whether to keep the seeder's convergence.
         patience: Evaluations after which the automatic search ends although nothing is proved, or a tenth of the
             budget, if that is more; the rest of the budget is for boxes (see ``Proof``). Of 13.7 million targets with a
