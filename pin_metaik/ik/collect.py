@@ -162,7 +162,7 @@ class Collection:
         starts = np.concatenate([real, nearly])
         self._add_from(starts, len(starts) + 1, branch=False)
         met = self._near_solution(np.hstack([real, np.zeros_like(real)])).all()
-        if every.proved and met and self.known and not self._roomy:
+        if every.proved and met and len(real) and not self._roomy:
             self.complete = Proof.COUNT
         return every.all and self.known > 0
 

@@ -119,7 +119,6 @@ def six_joints(paths: Paths) -> SixJoints | None:
     rng = np.random.default_rng(SEED)
     slides = int((wiring[:, ROTATES] == 0).sum())
     bound = BOUNDS.get(slides, 0) if len(joints) == SIX else 0
-
     size = np.where(periodic == 1, 1.0, length / np.pi)
 
     def drawn() -> Complexes:
@@ -141,10 +140,8 @@ def six_joints(paths: Paths) -> SixJoints | None:
     found = SixJoints(arm, length, len(known), bound, np.array(poses), np.array(every), np.empty(0, np.int64))
     if len(joints) > SIX:
         return found
-    return replace(
-        found,
-        loops=_best_loops(found, [_pose(arm, drawn().real.astype(np.complex128)).real.copy() for _ in range(POSES)]),
-    )
+    real = [_pose(arm, drawn().real.astype(np.complex128)).real.copy() for _ in range(POSES)]
+    return replace(found, loops=_best_loops(found, real))
 
 
 def copies_inside(X: Array, limits: Limits, x0: Array) -> Array:
@@ -163,10 +160,11 @@ def copies_inside(X: Array, limits: Limits, x0: Array) -> Array:
     first, last = np.where(winds, nearest, first), np.where(winds, nearest, last)
     if (first == last).all():
         return X + TURN * first
-    ways = [
-        product(*(np.arange(a, b + 1.0) for a, b in zip(*ends, strict=True))) for ends in zip(first, last, strict=True)
-    ]
-    return np.array([x + TURN * np.array(turns) for x, some in zip(X, ways, strict=True) for turns in some])
+    copies = []
+    for x, a, b in zip(X, first, last, strict=True):
+        turns = product(*(np.arange(low, high + 1.0) for low, high in zip(a, b, strict=True)))
+        copies += [x + TURN * np.array(some) for some in turns]
+    return np.array(copies)
 
 
 def _described(paths: Paths) -> tuple[ComplexArrays, float] | None:
