@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pin_metaik.arguments import array
+from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting
@@ -116,7 +116,7 @@ class SelfMotionCurve:
         """
         places = array("t", t, "...", error=InvalidSetting)
         X = self._turned(self._at(np.atleast_1d(places).ravel()))
-        return self.problem.chain.q(X, self.base).reshape(*places.shape, -1)
+        return self.problem.chain.q(X, self.base).reshape(*places.shape, self.problem.chain.model.nq)
 
     def sample(self, step: float) -> Array:
         """Configurations (k, nq), at most ``step`` (rad and m alike) of joint motion from one to the next.
@@ -136,6 +136,7 @@ class SelfMotionCurve:
         measure = measure_of("nearest")
         return self._least(lambda X: measure(self.problem, X, x), 1.0)
 
+    @checked
     def best(self, criterion: str | Criterion) -> CurvePoint:
         """The point where a criterion is least.
 
@@ -146,9 +147,14 @@ class SelfMotionCurve:
 
         Raises:
             UnknownName: No criterion of that name.
-            InvalidSetting: The function gives no number.
+            InvalidSetting: The function takes no configuration, or gives no number.
         """
         measure = measure_of(criterion)
+        if not isinstance(criterion, str):
+            try:
+                criterion(self.q(0.0))
+            except TypeError as error:
+                raise InvalidSetting(f"criterion is a function of a configuration q (nq,), but: {error}") from error
         return self._least(lambda X: measure(self.problem, self._turned(X), self._x0), self._rate(criterion))
 
     def free(self, world: CollisionWorld, step: float = 0.02) -> list[tuple[float, float]]:

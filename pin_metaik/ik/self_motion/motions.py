@@ -78,6 +78,7 @@ class SelfMotions:
         """
         return min((curve.nearest(q) for curve in self._some()), key=_value)
 
+    @checked
     def best(self, criterion: str | Criterion) -> CurvePoint:
         """The point of all curves where a criterion is least; see ``SelfMotionCurve.best``.
 
