@@ -188,12 +188,11 @@ def six(options: argparse.Namespace) -> list[str]:
     lines = [
         f"{options.random} random and {options.singular} near-singular poses an arm (det J = 0, then each joint moved "
         f"by up to {NEAR:g}), to {EXACT:g} m and rad, inside the limits. *Solutions*: of the union of all solvers and "
-        f"of {options.descents:,} random descents a pose, but for those within {ON_CURVE:g} of a singularity, which are "
-        "points of a curve; *missed*: of these, at random and near-singular poses, by "
-        "`solve_ik_all` and by its peers where they take the arm; *wrong*: not accepted by Pinocchio. *Called "
-        "complete*: share of the random poses, by what proves it; *contradicted*: such sets that the union has more "
-        "than. Times are medians of the random poses, the quicker of two calls a pose, solver by solver: without boxes "
-        "(`certify=False`), and with.",
+        f"of {options.descents:,} random descents a pose, but for points of a curve (least singular value below "
+        f"{ON_CURVE:g}); *missed*: of these, at random and near-singular poses, by `solve_ik_all` and by its peers "
+        "where they take the arm; *wrong*: not accepted by Pinocchio. *Called complete*: share of the random poses, by "
+        "what proves it; *contradicted*: such sets that the union has more than. Times are medians of the random "
+        "poses, the quicker of two calls a pose, solver by solver: without boxes (`certify=False`), and with.",
         "",
         "| arm | solutions | missed | wrong | called complete | contradicted | us | us with boxes | peers |",
         "|---|---:|---:|---:|---:|---:|---:|---:|---|",

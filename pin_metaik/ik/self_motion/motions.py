@@ -221,20 +221,28 @@ class _Search:
     def _is_covered(self, boxes: Boxes, side: int | None) -> bool:
         """Find the curves of some boxes, with a wrist bent to one side; whether there is one near all that are kept.
 
-        Those that are far from all curves are split again, as exclusion is weak where boxes are large.
+        Descents start from all of them, and those that are far from all curves then are split again, as exclusion is
+        weak where boxes are large.
         """
-        far = self._far(boxes, side)
+        kept = self._kept(boxes)
+        if kept is None:
+            return False
+        self._from(kept[:, : self._problem.chain.n], boxes.least)
+        far = kept[~self._is_near(boxes, kept, side)]
         for finer in FINER:
-            if far is None or not len(far):
-                break
-            far = self._far(boxes.among(far, 0.5 * self._resolution / finer), side)
-        return far is not None and not len(far)
+            if not len(far):
+                return True
+            boxes = boxes.among(far, 0.5 * self._resolution / finer)
+            kept = self._kept(boxes)
+            if kept is None:
+                return False
+            far = kept[~self._is_near(boxes, kept, side)]
+            self._from(far[:, : self._problem.chain.n], boxes.least)
+            far = far[~self._is_near(boxes, far, side)]
+        return not len(far)
 
-    def _far(self, boxes: Boxes, side: int | None) -> Array | None:
-        """Boxes (k, 2 m) that are kept and near no curve, once those that they lead to are found.
-
-        None, if the budget ends before, or there is no end of them.
-        """
+    def _kept(self, boxes: Boxes) -> Array | None:
+        """Boxes (k, 2 m) that are kept; None, if the budget ends before, or there is no end of them."""
         kept: list[Array] = []
         while not boxes.done:
             before = boxes.looked
@@ -243,10 +251,7 @@ class _Search:
             kept.append(boxes.look(min(CHUNK, self._left), CHUNK))
             self.spent += boxes.looked - before
             tell(self._watch, Progress(self.spent, self._total))
-        every = np.concatenate(kept) if kept else np.empty((0, 2 * boxes.arm.whole.shape[1]))
-        far = every[~self._is_near(boxes, every, side)]
-        self._from(far[:, : self._problem.chain.n], boxes.least)
-        return far[~self._is_near(boxes, far, side)]
+        return np.concatenate(kept) if kept else np.empty((0, boxes.arm.whole.shape[1]))
 
     def _is_near(self, boxes: Boxes, kept: Array, side: int | None) -> NDArray[np.bool_]:
         """(k,) whether all of each box (k, 2 m) is within the resolution of a point of a curve.
@@ -295,11 +300,9 @@ class _Search:
 
     def _is_on(self, curve: SelfMotionCurve, x: Array) -> bool:
         """Whether coordinates x (n,) lie on a curve: near to the line from one of its points to the next."""
-        a, steps = curve.x[:-1], np.diff(curve.x, axis=0)
-        ways = x - a
-        ways -= np.where(self._winds, TURN * np.round(ways / TURN), 0.0)
-        along = np.clip((ways * steps).sum(axis=1) / (steps * steps).sum(axis=1), 0.0, 1.0)
-        return bool((np.abs(ways - along[:, None] * steps).max(axis=1) < SAME).any())
+        from pin_metaik.kinematics.self_motion.near import is_on_curve
+
+        return bool(is_on_curve(x, curve.x, self._winds.astype(np.int64), SAME))
 
     def _followed(self, x: Array) -> SelfMotionCurve | None:
         """The curve through a solution x (n,), from end to end; None in a singularity, and for a point alone."""

@@ -60,8 +60,9 @@ class Boxes:
         part.looked, part.clean, part._least = 0, True, least
         part._waiting = np.empty((len(boxes) + DEPTH, boxes.shape[1]))
         part._waiting[: len(boxes)], part._count = boxes, len(boxes)
-        unsplit = self.arm.unsplit  # of these a box that was kept has where they may be, not the middle
-        part._waiting[: len(boxes), unsplit] = self.arm.whole[0, unsplit]
+        unsplit, m = self.arm.unsplit, boxes.shape[1] // 2
+        both = np.append(unsplit, m + unsplit)  # of these a box that was kept has where they may be, not the middle
+        part._waiting[: len(boxes), both] = self.arm.whole[0, both]
         return part
 
     def bent(self, side: int) -> Boxes:

@@ -1,4 +1,4 @@
-"""Which boxes of configurations are near a curve: near one of its points in every coordinate that counts."""
+"""What is near a curve: boxes of configurations, near one of its points, and configurations that are on it."""
 
 from __future__ import annotations
 
@@ -36,6 +36,35 @@ def is_within(box: Floats, x: Floats, counts: Ints, winds: Ints, resolution: flo
         if abs(way) + box[m + c] > resolution:
             return False
     return True
+
+
+@inline
+def is_on(x: Floats, a: Floats, b: Floats, winds: Ints, same: float) -> bool:
+    """Whether x (n,) is so near to the line from a to b (n,) in every coordinate."""
+    along = length = 0.0
+    for c in range(x.shape[0]):
+        way, step = x[c] - a[c], b[c] - a[c]
+        if winds[c] == 1:
+            way -= FULL_TURN * np.round(way / FULL_TURN)
+        along += way * step
+        length += step * step
+    share = min(max(along / length, 0.0), 1.0) if length > 0.0 else 0.0
+    for c in range(x.shape[0]):
+        way = x[c] - a[c] - share * (b[c] - a[c])
+        if winds[c] == 1:
+            way -= FULL_TURN * np.round(way / FULL_TURN)
+        if abs(way) > same:
+            return False
+    return True
+
+
+@jit("b1(f8[::1], f8[:,::1], i8[::1], f8)")
+def is_on_curve(x: Floats, X: Floats, winds: Ints, same: float) -> bool:
+    """Whether x (n,) is so near to the line through points X (p, n)."""
+    for i in range(X.shape[0] - 1):  # noqa: SIM110  any(...) takes a generator, which numba does not
+        if is_on(x, X[i], X[i + 1], winds, same):
+            return True
+    return False
 
 
 @jit("void(f8[:,::1], f8[:,::1], i8[::1], i8[::1], f8, i8[::1])")

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 
 import pin_metaik as mik
 from pin_metaik.kinematics.limits import Limits
+from pin_metaik.kinematics.roots.counting import simple_roots
 from pin_metaik.kinematics.roots.six_joints import Configurations, copies_inside
 
 TURN = 2.0 * np.pi
@@ -144,3 +145,17 @@ def test_a_configuration_comes_as_its_copies_inside_the_limits() -> None:
     assert_allclose(copies_inside(x, limits(0.1005, 8.0, False, False), x[0]), x)  # a descent may still end inside
     none = Configurations(np.empty((0, 6), np.complex128), np.empty((0, 6), np.complex128), False, False, 0)
     assert [part.shape for part in none.inside(limits(-1.0, 1.0, True, False), np.zeros(6))] == [(0, 6), (0, 6)]
+
+
+def test_only_separate_points_that_are_roots_are_counted() -> None:
+    six = drawn_chain("RRRRRR")._six_joints
+    assert six is not None
+    chain, rng = drawn_chain("RRRRRR"), np.random.default_rng(2)
+    pose = chain.poses(chain.box.sample(rng, 1)[0])[0, 0]
+    target = np.append(pose[:3, :3].ravel(), pose[:3, 3] / six.length)
+    roots = six.at(pose).x
+    assert simple_roots(*six.arm, target, roots) == 16
+    assert simple_roots(*six.arm, target, np.concatenate([roots[:5], roots[:5] + TURN])) == 5
+    assert simple_roots(*six.arm, target, roots + 1e-6 * rng.normal(size=roots.shape)) == 0
+    target[9] += 1e-6
+    assert simple_roots(*six.arm, target, roots) == 0
