@@ -29,7 +29,7 @@ from pin_metaik.randomness import DEFAULT_SEED
 from pin_metaik.watching import Progress, Stopped, Watch, tell
 
 MOTION_BUDGET = Budget(evaluations=400_000)
-RESOLUTION = 0.2  # rad or m
+RESOLUTION = 0.3  # rad or m
 EXACT = 1e-9  # m and rad, how closely curves keep to the target
 STEP = 0.05  # rad or m between the points of a curve, at most
 POINTS = 20_000  # of a curve at most
@@ -38,7 +38,8 @@ FINER = 8.0, 64.0, 512.0  # by how much smaller boxes that are far from all curv
 SEEDS = 512  # solutions to follow curves from, at a time
 LOOKED_UP, DRAWN, SEED = 128, 512, (DEFAULT_SEED, 0)  # configurations to descend from where boxes have no end
 SAME = 5e-3  # rad or m: a solution this near to a curve is on it
-STRAIGHT = 1e-2  # triple product of a wrist's axes below which it is bent to neither side
+STRAIGHT = 1e-2  # triple product of a wrist's axes below which it is bent to neither side ...
+FLAT = 0.2  # ... and in the middle of a box, below which it may be straight somewhere in it
 TURN = 2.0 * np.pi
 
 
@@ -49,8 +50,9 @@ class SelfMotions:
     Attributes:
         curves: The longest first.
         complete: ``Proof.BOXES``: every solution inside the limits is within ``resolution`` of a point of one of the
-            curves, in every coordinate but those of a wrist whose axes meet, and with that wrist bent to the same side.
-            So a curve is missing only if it stays that near to others. ``None``: nothing is proved.
+            curves, in every coordinate but those of a wrist whose axes meet, and with that wrist bent to the same side;
+            where the wrist is nearly straight its coordinates count, too. So a curve is missing only if it stays that
+            near to others. ``None``: nothing is proved.
         resolution: rad or m.
         evaluations: Forward kinematics computed, and boxes looked at.
         seconds: Time taken, s.
@@ -210,21 +212,38 @@ class _Search:
         if near == 0.0 or sum(free) < 2:
             boxes = chain._boxes(0, target.pose.homogeneous, near, 0.0, free, least=0.5 * self._resolution)
         if boxes is not None:
-            sides: tuple[int | None, ...] = (0, 1) if len(boxes.arm.wrist) else (None,)
-            covered = [self._is_covered(boxes if side is None else boxes.bent(side), side) for side in sides]
-            self.covered = all(covered)
+            self.covered = self._are_covered(boxes)
         if not self.covered:
             self._from(
                 np.concatenate([self._problem.near(LOOKED_UP), chain.sample(DRAWN, SEED)]), 0.5 * self._resolution
             )
 
-    def _is_covered(self, boxes: Boxes, side: int | None) -> bool:
-        """Find the curves of some boxes, with a wrist bent to one side; whether there is one near all that are kept.
+    def _are_covered(self, boxes: Boxes) -> bool:
+        """Find the curves of all boxes; whether there is one near all that are kept.
+
+        A wrist is bent to one side and then to the other. Where it is nearly straight, its first and last joint may
+        turn against each other while no other one moves: there its joints count, and are split, like all others.
+        """
+        if not len(boxes.arm.wrist):
+            return self._is_covered(boxes, self._kept(boxes), None)
+        covered, straight = True, []
+        for side in (0, 1):
+            part = boxes.bent(side)
+            kept = self._kept(part)
+            if kept is None:
+                return False
+            flat = np.abs(self._bends(part, kept[:, : self._problem.chain.n])) < FLAT
+            covered = self._is_covered(part, kept[~flat], side) and covered
+            straight.append(kept[flat])
+        rest = boxes.among(np.concatenate(straight), boxes.least).split()
+        return self._is_covered(rest, self._kept(rest), None) and covered
+
+    def _is_covered(self, boxes: Boxes, kept: Array | None, side: int | None) -> bool:
+        """The same of boxes (k, 2 m) that are kept, with a wrist bent to one side; None is no end of them.
 
         Descents start from all of them, and those that are far from all curves then are split again, as exclusion is
         weak where boxes are large.
         """
-        kept = self._kept(boxes)
         if kept is None:
             return False
         self._from(kept[:, : self._problem.chain.n], boxes.least)
@@ -233,10 +252,10 @@ class _Search:
             if not len(far):
                 return True
             boxes = boxes.among(far, 0.5 * self._resolution / finer)
-            kept = self._kept(boxes)
-            if kept is None:
+            found = self._kept(boxes)
+            if found is None:
                 return False
-            far = kept[~self._is_near(boxes, kept, side)]
+            far = found[~self._is_near(boxes, found, side)]
             self._from(far[:, : self._problem.chain.n], boxes.least)
             far = far[~self._is_near(boxes, far, side)]
         return not len(far)
@@ -270,15 +289,20 @@ class _Search:
 
     def _is_bent(self, boxes: Boxes, curve: SelfMotionCurve, side: int | None) -> NDArray[np.bool_]:
         """(k,) whether a wrist is bent to one side, or nearly straight, at each point of a curve."""
-        from pin_metaik.kinematics.self_motion.near import bends
-
         if side is None:
             return np.ones(len(curve.x), bool)
-        joints, wiring, _, tip, *_ = boxes.arm.arrays
-        bent = np.empty(len(curve.x))
-        bends(joints, wiring, tip, curve.x, bent)
+        bent = self._bends(boxes, curve.x)
         found: NDArray[np.bool_] = bent < STRAIGHT if side == 0 else bent > -STRAIGHT
         return found
+
+    def _bends(self, boxes: Boxes, X: Array) -> Array:
+        """Triple product (k,) of a wrist's axes at coordinates X (k, n): 0 where it is straight."""
+        from pin_metaik.kinematics.self_motion.near import bends
+
+        joints, wiring, _, tip, *_ = boxes.arm.arrays
+        bent = np.empty(len(X))
+        bends(joints, wiring, tip, np.ascontiguousarray(X), bent)
+        return bent
 
     @property
     def _left(self) -> int:

@@ -65,6 +65,12 @@ class Boxes:
         part._waiting[: len(boxes), both] = self.arm.whole[0, both]
         return part
 
+    def split(self) -> Boxes:
+        """The same with the joints of a wrist split, too; see ``ProofArm.split``."""
+        part = copy(self)
+        part.arm, part._waiting = self.arm.split, self._waiting.copy()
+        return part
+
     def bent(self, side: int) -> Boxes:
         """The same with the wrist bent to one side; see ``ProofArm.bent``."""
         part = copy(self)
