@@ -92,6 +92,18 @@ def timed() -> mik.TimedPath:
     return mik.time_path(arm(), np.array([[0.0, 0.0], [0.3, 0.5], [1.0, 0.2]]))
 
 
+@cache
+def redundant() -> mik.Chain:
+    robot = mik.load_robot("panda")
+    return mik.Chain(robot, robot.frame)
+
+
+@cache
+def motions() -> mik.SelfMotions:
+    q = redundant().q([0.4, 0.3, -0.2, -1.5, 0.5, 1.8, 0.3])
+    return mik.self_motions(redundant(), redundant().placements(q)[0])
+
+
 def world() -> mik.CollisionWorld:
     made = mik.CollisionWorld(two_links())
     made.add(collision.Obstacle("wall", collision.Box((0.1, 1.0, 1.0)), (1.8, 0.0, 0.0)))
@@ -385,6 +397,8 @@ OWNERS: dict[str, Callable[[], Any]] = {
     "optimize.Result": lambda: optimize.minimize(half, optimize.Box([-1.0], [1.0]), "de", FEW),
     "stewart.Designed": lambda: stewart.design(mechanism()),
     "stewart.TypeDesign": lambda: stewart.compare_types(mechanism(), ["6x6"])[0],
+    "mik.SelfMotionCurve": lambda: motions().curves[0],
+    "mik.SelfMotions": lambda: motions(),
     "mik.IKSolver": lambda: mik.IKSolver(budget=FEW),
     "mik.Limits": lambda: chain().limits,
     "mik.Search": lambda: optimize.Search(optimize.Box([0.0], [1.0]), rng(), np.empty((0, 1)), FEW),
@@ -598,6 +612,24 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "timing.draw_timed": lambda: {"timed": timed()},
     "mik.IKResult.as_dict": dict,
     "mik.IKSolutions.as_dict": dict,
+    "mik.SelfMotionCurve.as_dict": dict,
+    "mik.SelfMotionCurve.best": lambda: {"criterion": "nearest"},
+    "mik.SelfMotionCurve.free": lambda: {"world": mik.CollisionWorld(mik.load_robot("panda")), "step": 1.0},
+    "mik.SelfMotionCurve.nearest": lambda: {"q": motions().curves[0].base},
+    "mik.SelfMotionCurve.q": lambda: {"t": 0.1},
+    "mik.SelfMotionCurve.sample": lambda: {"step": 0.5},
+    "mik.SelfMotions.as_dict": dict,
+    "mik.SelfMotions.best": lambda: {"criterion": "limits"},
+    "mik.SelfMotions.nearest": lambda: {"q": motions().curves[0].base},
+    "mik.gravity_torque": lambda: {"chain": chain(), "payload": 1.0, "at": (0.0, 0.0, 0.1)},
+    "mik.self_motions": lambda: {
+        "chain": redundant(),
+        "target": redundant().placements(redundant().reference)[0].homogeneous,
+        "q0": redundant().reference,
+        "resolution": 1.0,
+        "budget": FEW,
+        "watch": None,
+    },
     "optimize.Result.as_dict": dict,
     "stewart.Designed.as_dict": dict,
     "stewart.TypeDesign.as_dict": dict,
@@ -684,6 +716,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "apart": 0.01,
         "solver": None,
         "budget": FEW,
+        "certify": True,
         "world": None,
         "rng": 0,
         "watch": None,

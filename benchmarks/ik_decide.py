@@ -10,18 +10,13 @@ said otherwise. Times are processor times.
 from __future__ import annotations
 
 import argparse
-import os
-import platform
-import re
-import sys
 from collections.abc import Callable
-from datetime import date
-from importlib.metadata import version
 from pathlib import Path
 
 from ik_decide_arms import arms, complete, margins, starts
 from ik_decide_grasps import shelf, twice
 from proof_soundness import KINDS, counted
+from sections import conditions, page_with
 
 TITLE = "# Every target solved or proved unreachable"
 
@@ -53,27 +48,6 @@ SECTIONS: dict[str, tuple[str, Callable[[argparse.Namespace], list[str]]]] = {
 }
 
 
-def page_with(page: str, title: str, lines: list[str]) -> str:
-    """The page with one section new, all in the order of ``SECTIONS``."""
-    _, *old = page.split("\n## ")
-    known = {name: text.strip() for name, _, text in (section.partition("\n") for section in old)}
-    known[title] = "\n".join(lines).strip()
-    written = [f"## {name}\n\n{known[name]}" for name, _ in SECTIONS.values() if name in known]
-    return "\n\n".join([TITLE, *written]) + "\n"
-
-
-def conditions() -> str:
-    """The command, the date and the machine."""
-    packages = ", ".join(f"{name} {version(name)}" for name in ("pin", "coal", "numpy", "numba"))
-    load = ", ".join(f"{value:.1f}" for value in os.getloadavg())
-    files = re.compile(r" --(out|kept-parts|kept-scan)[ =]\S+")  # they do not change what is measured
-    command = files.sub("", " ".join(["python", "benchmarks/ik_decide.py", *sys.argv[1:]]))
-    return (
-        f"`{command}`, {date.today()}, {os.cpu_count()}-core {platform.machine()}, load {load}, "
-        f"Python {platform.python_version()}, {packages}."
-    )
-
-
 def main() -> None:
     """Measure the sections named and write them into the page, one after the other."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -92,7 +66,9 @@ def main() -> None:
         title, measure = SECTIONS[name]
         lines = [conditions(), "", *measure(options)]
         page = options.out.read_text(encoding="utf-8") if options.out.exists() else ""
-        options.out.write_text(page_with(page, title, lines), encoding="utf-8")
+        options.out.write_text(
+            page_with(page, TITLE, [name for name, _ in SECTIONS.values()], title, lines), encoding="utf-8"
+        )
         print(f"## {title}", *lines, sep="\n", flush=True)
 
 

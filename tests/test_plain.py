@@ -34,12 +34,14 @@ def test_values_become_plain_and_what_json_does_not_have_is_none() -> None:
 
 
 UR5_POSE = np.array([[0.0, 0.0, 1.0, 0.3], [0.0, 1.0, 0.0, 0.3], [-1.0, 0.0, 0.0, 0.4], [0.0, 0.0, 0.0, 1.0]])
+PANDA = np.array([0.4, 0.3, -0.2, -1.5, 0.5, 1.8, 0.3, 0.0])
 X = np.random.default_rng(0).random((40, 2))
 RESULTS: dict[str, Callable[[], Any]] = {
     "IKResult": lambda: mik.solve_ik(chain_of("ur5"), UR5_POSE),
     "IKResult out of reach": lambda: mik.solve_ik(chain_of("ur5"), [9.0, 0.0, 0.0]),
     "IKBatch": lambda: mik.solve_ik_batch(chain_of("ur5"), [UR5_POSE, [9.0, 0.0, 0.0]]),
     "IKPath": lambda: mik.solve_ik_path(chain_of("ur5"), [UR5_POSE, [9.0, 0.0, 0.0]]),
+    "SelfMotions": lambda: mik.self_motions(chain_of("panda"), chain_of("panda").placements(PANDA)[0], resolution=0.4),
     "IKSolutions": lambda: mik.solve_ik_all(chain_of("ur5"), UR5_POSE),
     "Result": lambda: mik.minimize(
         lambda Q: np.square(Q).sum(axis=1), mik.Box([-1.0], [1.0]), "de", mik.Budget(200), trace=True

@@ -44,6 +44,7 @@ def collect(
     limit: int,
     apart: float,
     budget: Budget,
+    certify: bool = True,
     watch: Watch | None = None,
 ) -> tuple[IKProblem, Array, Proof | None, int]:
     """Distinct solutions (s, n), what proves that they are all, and the evaluations spent.
@@ -57,7 +58,7 @@ def collect(
     for aim in (problem, problem.whole):
         state = SearchState(aim, budget, began, x0)
         state.spent = spent
-        collection = Collection(state, descent, rng, limit, apart, watch)
+        collection = Collection(state, descent, rng, limit, apart, certify, watch)
         collection.run()
         spent = state.spent
         if collection.known or state.over():
@@ -76,13 +77,24 @@ class Collection:
     """
 
     def __init__(
-        self, state: SearchState, descent: Descent, rng: Rng, limit: int, apart: float, watch: Watch | None = None
+        self,
+        state: SearchState,
+        descent: Descent,
+        rng: Rng,
+        limit: int,
+        apart: float,
+        certify: bool = True,
+        watch: Watch | None = None,
     ) -> None:
-        """Begin with no solution, at the state's coordinates; a joint that does not matter stays where it has it."""
+        """Begin with no solution, at the state's coordinates; a joint that does not matter stays where it has it.
+
+        ``certify`` says whether boxes may be looked at to prove that nothing is missing.
+        """
         self.problem, self.state = state.problem, state
         self.known = 0
         self.complete: Proof | None = None
         self._x0, self._descent, self._rng, self._apart, self._watch = state.x, descent, rng, apart, watch
+        self._certify = certify
         self._found = np.empty((limit, state.problem.chain.n))
         self._vain = 0
 
@@ -104,9 +116,11 @@ class Collection:
         formed = problem.form_branches
         if formed is not None and self._by_closed_form(formed.boxes):
             return
-        self._by_descents()
         whole = len(problem.targets) == 1 and all(problem.targets[0].counts) and not problem.goals
-        if formed is None and whole and problem.chain.n <= problem.m and not problem.loose:
+        if not (whole and self._by_roots()):
+            self._by_descents()
+        finite = whole and problem.chain.n <= problem.m and not problem.loose
+        if finite and formed is None and self.complete is None and self._certify:
             self._keep_exact()
             self._by_cover()
 
@@ -126,13 +140,31 @@ class Collection:
             return False
         self._add_from(starts, len(starts) + 1, branch=False)
         if hidden:
-            return self.known > 0
+            return False
         boxes = exact if len(exact) else whole
         missing = boxes[~self._has_solution(boxes)]
         self._add_from(problem.limits.clip(missing[:, :n]), len(missing) + 1, branch=False)
         if len(exact) and self._has_solution(exact).all() and not self._roomy:
             self.complete = Proof.CLOSED_FORM
         return self.known > 0
+
+    def _by_roots(self) -> bool:
+        """Descend from all real configurations of six coordinates; whether these are all, as far as can be told.
+
+        Each of them that is inside the limits has its solution in the end, or it is open whether there are more.
+        """
+        problem = self.problem
+        every = problem.chain._configurations(problem.targets[0].pose.homogeneous)
+        if every is None:
+            return False
+        self.state.spent += every.evaluations
+        real, nearly = every.inside(problem.limits, self._x0)
+        starts = np.concatenate([real, nearly])
+        self._add_from(starts, len(starts) + 1, branch=False)
+        met = self._near_solution(np.hstack([real, np.zeros_like(real)])).all()
+        if every.proved and met and len(real) and not self._roomy:
+            self.complete = Proof.COUNT
+        return every.all and self.known > 0
 
     def _by_descents(self) -> None:
         """Descend from near-by configurations of the atlas and from random ones."""

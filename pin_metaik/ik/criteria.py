@@ -12,6 +12,7 @@ from pin_metaik.arguments import shown
 from pin_metaik.arrays import Array
 from pin_metaik.dexterity import manipulability
 from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.ik.gravity import gravity_torque
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.descent import Descent
 
@@ -48,10 +49,17 @@ def limit_proximity(problem: IKProblem, X: Array, x0: Array) -> Array:
     return worst
 
 
+def gravity_torques(problem: IKProblem, X: Array, x0: Array) -> Array:
+    """Size (k,) of the torques and forces that hold the chain's joints against gravity at X (k, n), N m and N."""
+    torque = gravity_torque(problem.chain)
+    return np.array([torque(q) for q in problem.chain.q(X)])
+
+
 CRITERIA: dict[str, Measure] = {
     "nearest": displacement,
     "manipulability": neg_manipulability,
     "limits": limit_proximity,
+    "torque": gravity_torques,
 }
 
 

@@ -16,5 +16,7 @@ class Proof(StrEnum):
     """The target is farther from, or nearer to, a joint than the links between can span."""
     CLOSED_FORM = "CLOSED_FORM"
     """The branches of the arm's closed form, each judged for every pose within the tolerances."""
+    COUNT = "COUNT"
+    """As many separate configurations, real and complex, as six joints can have for a pose: no other one is left."""
     BOXES = "BOXES"
     """Boxes of configurations that cover the limits, each excluded by bounds on where it can take the frame."""

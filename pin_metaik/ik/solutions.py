@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from time import perf_counter
 from typing import Any
 
@@ -16,6 +17,14 @@ from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.collect import collect
 from pin_metaik.ik.problem import Asked, IKProblem
 from pin_metaik.ik.proof import Proof
+from pin_metaik.ik.self_motion.curve import SelfMotionCurve
+from pin_metaik.ik.self_motion.motions import (
+    MOTION_BUDGET,
+    RESOLUTION,
+    exactly,
+    find_self_motions,
+    has_curves,
+)
 from pin_metaik.ik.solver import APART, DEFAULT_SOLVER, IKSolver
 from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Budget
@@ -34,9 +43,10 @@ class IKSolutions:
     Attributes:
         q: (s, nq) configurations, each judged by Pinocchio, and in a world by coal.
         complete: What proves that these are all, each to within the distance between distinct solutions: the branches
-            of the arm's closed form, or boxes that cover all configurations; ``None`` where nothing does, as on a chain
-            with more joints than its target needs, in a singularity, or where tolerances leave room for more than one
-            answer. What meets the tolerances but not the pose exactly counts only where nothing near it does.
+            of the arm's closed form, the number of its configurations, real and complex, or boxes that cover all
+            configurations; ``None`` where nothing does, as on a chain with more joints than its target needs, in a
+            singularity, or where tolerances leave room for more than one answer. What meets the tolerances but not the
+            pose exactly counts only where nothing near it does.
         evaluations: Forward kinematics computed.
         seconds: Time taken, s.
         problem: What was asked; out of a pickle, without its world, which has all meshes in it.
@@ -53,6 +63,18 @@ class IKSolutions:
     def __getstate__(self) -> dict[str, object]:
         """Pickle without the world: kilobytes rather than megabytes."""
         return {**self.__dict__, "problem": replace(self.problem, world=None)}
+
+    @cached_property
+    def curves(self) -> tuple[SelfMotionCurve, ...]:
+        """All self-motions of a chain with one spare coordinate, the longest first; found when first asked for.
+
+        See ``self_motions``, which also says whether they are proved to be all, and takes a resolution and a budget.
+        There are none where solutions are separate, or have more than one degree of freedom: those are sampled in q.
+        """
+        problem = replace(exactly(self.problem), world=None)
+        if not has_curves(problem):
+            return ()
+        return find_self_motions(problem, problem.chain.reference, RESOLUTION, MOTION_BUDGET).curves
 
     @property
     def x(self) -> NDArray[np.float64]:
@@ -80,6 +102,7 @@ def solve_ik_all(
     apart: float = APART,
     solver: IKSolver | None = None,
     budget: Budget = DEFAULT_BUDGET,
+    certify: bool = True,
     world: CollisionWorld | None = None,
     rng: Rng = None,
     watch: Watch | None = None,
@@ -87,9 +110,11 @@ def solve_ik_all(
     """Find all distinct solutions of a target, and prove that there are no others where that can be had.
 
     Solutions that differ by whole turns count as one and come as the copy nearest to ``q0``. Descents start from what a
-    closed form says, if the arm has one; otherwise, and in singularities, from an atlas of the chain, from random
-    configurations, and from the solutions known with one joint turned half round, until no new one appears; then, on
-    chains of six joints and fewer, boxes of configurations are looked at for what may be missing.
+    closed form says, if the arm has one, and from all configurations of six coordinates, real and complex, which are
+    found by elimination and continuation. Otherwise, and where some of these are missing, as in singularities, they
+    start from an atlas of the chain, from random configurations, and from the solutions known with one joint turned
+    half round, until no new one appears. Then, on chains of six coordinates and fewer, boxes of configurations are
+    looked at for what may be missing, unless counting has proved that nothing is.
 
     Args:
         chain: The joints to move and the frames to place.
@@ -100,6 +125,7 @@ def solve_ik_all(
         apart: rad or m by which some coordinate of two solutions must differ.
         solver: Whose refiner descends; default ``IKSolver()``. Of a solver, nothing else is used here.
         budget: Evaluations (and seconds, which are not reproducible) that may be spent.
+        certify: Whether boxes may be looked at to prove that no solution is missing, which takes milliseconds.
         world: What must not collide: solutions that do are left out, after they have counted towards the limit.
         rng: Seed or generator; ``None`` is a fixed seed.
         watch: Called between batches of descents with evaluations spent and allowed; True ends the search.
@@ -126,7 +152,15 @@ def solve_ik_all(
     interrupted = False
     try:
         _, found, complete, spent = collect(
-            problem, x0, solver.descent, rng, limit=limit, apart=apart, budget=budget, watch=watch
+            problem,
+            x0,
+            solver.descent,
+            rng,
+            limit=limit,
+            apart=apart,
+            budget=budget,
+            certify=certify,
+            watch=watch,
         )
     except Stopped as stop:
         (found, spent), complete, interrupted = stop.result, None, True

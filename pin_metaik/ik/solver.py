@@ -25,6 +25,7 @@ from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine import DLS, Refinement, Refiner, make_refiner
 from pin_metaik.ik.refine.descent import Descent, descent_of
 from pin_metaik.ik.result import IKResult, IKStatus
+from pin_metaik.ik.self_motion.motions import RESOLUTION, exactly, find_self_motions, has_curves
 from pin_metaik.ik.starts import start_batches
 from pin_metaik.ik.state import ENDLESS, SearchState
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
@@ -62,8 +63,10 @@ class IKSolver:
             it stops once the tolerances are met.
         starts: How many starts to refine without a seeder; ``None``: until the budget is spent.
         select: ``"first"`` solution found, or of all distinct ones that the budget allows to find, the ``"nearest"`` to
-            ``q0``, the one of best ``"manipulability"``, the one that keeps farthest from the ``"limits"``, or the one
-            for which a function of your own, of a configuration q (nq,), gives the lowest number.
+            ``q0``, the one of best ``"manipulability"``, the one that keeps farthest from the ``"limits"``, the one
+            held with the least ``"torque"`` against gravity, or the one for which a function of your own, of a
+            configuration q (nq,), gives the lowest number. With one spare joint and no world it is the best of all
+            self-motions (see ``self_motions``), where these are proved to be all.
         trace: Whether to keep the seeder's convergence.
         patience: Evaluations after which the automatic search ends although nothing is proved, or a tenth of the
             budget, if that is more; the rest of the budget is for boxes (see ``Proof``). Of 13.7 million targets with a
@@ -204,6 +207,12 @@ class IKSolver:
         """
         x0 = problem.chain.x(base)
         budget = Budget(evaluations=max(1, state.left(CHOICE_SHARE)), seconds=self.budget.seconds)
+        if problem.world is None and has_curves(problem):
+            motions = find_self_motions(exactly(problem), base, RESOLUTION, budget)
+            state.spent += motions.evaluations
+            if motions.complete is not None and len(motions):
+                state.x, state.met = problem.chain.x(motions.best(self.select).q), True
+                return
         problem, found, complete, spent = collect(
             problem, x0, self.descent, rng, limit=CHOICE, apart=APART, budget=budget
         )

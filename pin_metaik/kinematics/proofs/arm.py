@@ -106,6 +106,24 @@ class ProofArm:
         return replace(self, arrays=(joints, wiring, knots, tip, lower, upper, reach, 2 * wrist))
 
     @property
+    def unsplit(self) -> Ints:
+        """(3,) coordinates of a wrist, which are never split; (0,) if there is none."""
+        columns, wrist = self.arrays[1][-3:, COLUMN], self.arrays[7][0]
+        return columns if wrist not in (0, 2) else columns[:0]
+
+    @property
+    def wrist(self) -> Ints:
+        """The same of a wrist that is the chain's own."""
+        columns = self.unsplit
+        return columns if (columns < self.n).all() else columns[:0]
+
+    def bent(self, side: int) -> ProofArm:
+        """The same arm with its wrist bent to one side, 0 or 1; see ``BoxArm``."""
+        from pin_metaik.kinematics.proofs.box import BENT
+
+        return replace(self, arrays=(*self.arrays[:7], np.array([BENT[side]])))
+
+    @property
     def movers(self) -> int:
         """How many of the chain's coordinates move the tip."""
         return int((np.unique(self.arrays[1][:, 0]) < self.n).sum())

@@ -19,6 +19,7 @@ from pin_metaik.kinematics.kernel.forward import forward
 from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE
 from pin_metaik.kinematics.proofs.balls import chord, norm
 
+BENT = 3, 4
 START = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])  # the world, seen from the world
 
 
@@ -35,7 +36,8 @@ class BoxArm(NamedTuple):
         reach: (2,) greatest distance of any point from the tip and from each other, m; and how far turns of the wrist
             may move its point as the tip sees it, because its axes do not quite meet.
         wrist: (1,) 1 if the last three axes meet, each with a coordinate of its own; then these are never split, or, if
-            it is 2, once all others are short.
+            it is 2, once all others are short. BENT[0] or BENT[1]: only where it is bent to that side, with a triple
+            product of its axes below or above 0.
     """
 
     joints: Floats

@@ -20,7 +20,7 @@ from pin_metaik.kinematics.proofs.balls import (
     reverse,
     turned_ball,
 )
-from pin_metaik.kinematics.proofs.box import BoxArm, Laid, times
+from pin_metaik.kinematics.proofs.box import BENT, BoxArm, Laid, times
 
 
 @shared
@@ -52,6 +52,8 @@ def excluded_by_wrist(arm: BoxArm, laid: Laid, centre: Floats, width: Floats, al
     near, far = math.acos(min((rest + spread) / size, 1.0)), math.acos(max((rest - spread) / size, -1.0))
     middle, half, radius = math.atan2(b, a), 0.5 * (near + far), 0.5 * (far - near)
     for way in range(2):
+        if arm.wrist[0] == BENT[1 - way]:
+            continue
         second = middle + (half if way == 0 else -half)
         t2: Arc = (math.cos(second), math.sin(second)), radius
         t1 = arc_from_to(k1, turned_ball(k2, t2, (k3, 0.0)), (goal, off))

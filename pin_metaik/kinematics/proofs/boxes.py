@@ -52,11 +52,35 @@ class Boxes:
 
     def within(self, box: Floats, least: float) -> Boxes:
         """The same for the configurations of one box (2 m,) that was kept, down to smaller ones."""
+        return self.among(box[None], least)
+
+    def among(self, boxes: Floats, least: float) -> Boxes:
+        """The same for the configurations of some boxes (b, 2 m) that were kept, down to smaller ones."""
         part = copy(self)
         part.looked, part.clean, part._least = 0, True, least
-        part._waiting = self._waiting.copy()
-        part._waiting[0], part._count = box, 1
+        part._waiting = np.empty((len(boxes) + DEPTH, boxes.shape[1]))
+        part._waiting[: len(boxes)], part._count = boxes, len(boxes)
+        unsplit, m = self.arm.unsplit, boxes.shape[1] // 2
+        both = np.append(unsplit, m + unsplit)  # of these a box that was kept has where they may be, not the middle
+        part._waiting[: len(boxes), both] = self.arm.whole[0, both]
         return part
+
+    def split(self) -> Boxes:
+        """The same with the joints of a wrist split, too; see ``ProofArm.split``."""
+        part = copy(self)
+        part.arm, part._waiting = self.arm.split, self._waiting.copy()
+        return part
+
+    def bent(self, side: int) -> Boxes:
+        """The same with the wrist bent to one side; see ``ProofArm.bent``."""
+        part = copy(self)
+        part.arm, part._waiting = self.arm.bent(side), self._waiting.copy()
+        return part
+
+    @property
+    def least(self) -> float:
+        """Half width (rad or m) below which a box is kept."""
+        return self._least
 
     @property
     def done(self) -> bool:

@@ -6,6 +6,7 @@ import pytest
 
 import pin_metaik as mik
 from pin_metaik.kinematics.proofs.arm import WHOLE, Path, ProofArm, proof_arm
+from pin_metaik.kinematics.self_motion.near import bends
 
 
 def chain_of(robot: str) -> mik.Chain:
@@ -107,3 +108,21 @@ def test_slides_without_limits_cannot_be_covered() -> None:
     model.addFrame(pin.Frame("tip", joint, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME))
     chain = mik.Chain(model, "tip")
     assert proof_arm(chain.paths, chain.limits, 0, WHOLE) is None
+
+
+def test_a_wrist_bent_to_one_side_keeps_the_boxes_of_solutions_bent_so() -> None:
+    chain = chain_of("panda")
+    rng = np.random.default_rng(4)
+    seen = set()
+    for x in chain.box.sample(rng, 60):
+        boxes = chain._boxes(0, chain.poses(x)[0, 0], 0.0, 0.0, least=1e-3)
+        joints, wiring, _, tip, *_ = boxes.arm.arrays
+        bent = np.empty(1)
+        bends(joints, wiring, tip, x[None], bent)
+        side = int(bent[0] > 0.0)
+        box = np.concatenate([x, np.full(chain.n, 1e-4)])
+        kept = [len(boxes.bent(way).within(box, 1e-3).look(50, 50)) for way in (0, 1)]
+        assert kept[side] == 1
+        seen.add((side, kept[1 - side]))
+    assert {side for side, _ in seen} == {0, 1}
+    assert 0 in {other for _, other in seen}  # bent the other way it would be beyond its limits

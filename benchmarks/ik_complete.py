@@ -1,0 +1,344 @@
+"""All solutions of six joints, and all self-motions of seven: what is missed, what is wrong, and how long it takes.
+
+    python benchmarks/ik_complete.py [six seven] [--arms ur5 ...] [--random 500] [--singular 200] [--descents 5000] ...
+
+Writes the sections named, default both, into the page, and leaves the other as it is; each says by which command it
+was measured, when and on what machine. The truth is the union of all solvers and of random descents, each judged by
+Pinocchio. Peers are installed by ``pip install pin-metaik[branches]``; one that is not installed, or needs minutes to
+derive an arm's equations, is left out of that arm's row.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+from sections import conditions, page_with
+
+import pin_metaik as mik
+from pin_metaik.dexterity import singular_values
+from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.refine import DLS
+from pin_metaik.kinematics.paths import matrix_of
+
+Floats = NDArray[np.float64]
+Solve = Callable[[Floats], Floats]
+
+EXACT = 1e-9  # m and rad
+ON_CURVE = 1e-6  # least singular value of the Jacobian below which a solution is one of a curve
+APART = 1e-2  # rad or m: solutions that differ by less in every joint are one
+OFF = 1e-3  # m and rad, of a calibrated arm
+NEAR = 1e-4  # rad or m, from a singularity
+CALLS = 2  # of each solver for a pose, of which the quicker one counts
+MOST = 512  # solutions of one target
+PREBUILT = ["jaco2", "xarm6", "crx10ia"]  # arms whose numbers the peer ssik has
+SIX = ["ur5", "puma560", "rv7fl", "z1", "kinova", "aerial_arm", "bravo7_no_ee", "alexander"]
+SIX += ["ur5 calibrated", "puma560 calibrated", *PREBUILT]
+SEVEN = ["panda", "xarm7", "iiwa14", "pr2 arm"]
+
+
+def chain_of(name: str) -> mik.Chain:
+    """An arm by its name, perhaps one whose joints are 1 mm and 1 mrad off their places."""
+    if name in [*PREBUILT, "iiwa14"]:
+        return chain_from_peer(name)
+    name, _, more = name.partition(" ")
+    robot = mik.load_robot(name)
+    if more == "arm":
+        return mik.Chain(robot.model, robot.frame, locked=["torso_lift_joint"])
+    model = robot.model.copy()
+    if more == "calibrated":
+        rng = np.random.default_rng(1)
+        for j in range(1, model.njoints):
+            twist = OFF * rng.uniform(-1.0, 1.0, 6)
+            model.jointPlacements[j] = model.jointPlacements[j] * pin.exp6(pin.Motion(twist))
+    return mik.Chain(model, robot.frame)
+
+
+def chain_from_peer(name: str) -> mik.Chain:
+    """An arm by the numbers that come with ssik: each joint's placement, axis and limits."""
+    import ssik
+
+    arm = next(arm for arm in ssik.list_arms() if arm.import_path.endswith(f"{name}_ik"))
+    body = ssik.Manipulator.from_prebuilt(arm.name).kinbody
+    model, parent, placement = pin.Model(), 0, pin.SE3.Identity()
+    for joint in body.joints:
+        placement = placement * pin.SE3(joint.T_left)
+        kind = pin.JointModelRevoluteUnaligned(np.array(joint.axis))
+        lower, upper = (np.array([limit]) for limit in joint.limits or (-np.pi, np.pi))
+        parent = model.addJoint(parent, kind, placement, joint.name, np.ones(1), np.ones(1), lower, upper)
+        placement = pin.SE3(joint.T_right)
+    model.addFrame(pin.Frame("tip", parent, 0, placement, pin.FrameType.OP_FRAME))
+    return mik.Chain(model, "tip")
+
+
+def singular(chain: mik.Chain, rng: np.random.Generator) -> Floats:
+    """Coordinates (6,) near where the determinant of the Jacobian changes its sign."""
+
+    def sign(x: Floats) -> float:
+        q = chain.q(x)
+        J = pin.computeFrameJacobian(chain.model, chain.data, q, chain.frame_ids[0])
+        return float(np.linalg.det(J[:, [chain.model.joints[int(j)].idx_v for j in chain.coordinates.joints]]))
+
+    while True:
+        a, b = chain.box.sample(rng, 2)
+        if sign(a) * sign(b) < 0.0:
+            break
+    for _ in range(50):
+        middle = 0.5 * (a + b)
+        a, b = (middle, b) if sign(middle) * sign(a) > 0.0 else (a, middle)
+    return chain.limits.clip(a + NEAR * rng.uniform(-1.0, 1.0, chain.n))
+
+
+@dataclass
+class Count:
+    """What became of one solver on one arm.
+
+    Attributes:
+        missed: Solutions of the union that it has not, by family of poses.
+        wrong: Of its own that Pinocchio does not accept.
+        times: s, of each random pose.
+    """
+
+    missed: dict[str, int] = field(default_factory=lambda: {"random": 0, "singular": 0})
+    wrong: int = 0
+    times: list[float] = field(default_factory=list)
+
+
+def peers(chain: mik.Chain, name: str) -> Iterator[tuple[str, Solve]]:
+    """Other solvers that are installed and take this arm: its coordinates (s, 6) for a pose (4, 4)."""
+    rows = [*chain.paths.joints, chain.paths.tips[0]]
+    links = np.array([matrix_of(row) for row in rows])
+    box = np.stack([chain.box.lower, chain.box.upper], axis=1)
+    with suppress(ImportError):
+        import ssik
+
+        quick = name in PREBUILT or len(chain.form)
+        if name in PREBUILT:
+            arm = next(arm for arm in ssik.list_arms() if arm.import_path.endswith(f"{name}_ik"))
+            theirs = ssik.Manipulator.from_prebuilt(arm.name)
+        elif quick:
+            theirs = ssik.Manipulator.from_transforms(links, limits=box)
+        if quick:
+            yield (
+                "ssik",
+                lambda T: np.array([s.q for s in theirs.solve(T, enumerate_windings=False)]).reshape(-1, 6),
+            )
+    with suppress(ImportError):
+        from eaik.IK_Homogeneous import HomogeneousRobot
+
+        frames = np.array([np.linalg.multi_dot([np.eye(4), *links[: k + 1]]) for k in range(7)])
+        robot = HomogeneousRobot(frames)
+        if robot.hasKnownDecomposition():
+
+            def eaik(T: Floats) -> Floats:
+                found = robot.IK(T)
+                return np.array([x for x, rough in zip(found.Q, found.is_LS, strict=True) if not rough]).reshape(-1, 6)
+
+            yield "EAIK", eaik
+
+
+def inside(chain: mik.Chain, X: Floats) -> Floats:
+    """Those of the coordinates (s, n) that whole turns bring inside the limits, there."""
+    turn = 2.0 * np.pi
+    up = np.ceil((chain.box.lower - 1e-9 - X) / turn)
+    X = np.where(chain.limits.rotates, X + turn * up, X)
+    return X[((chain.box.lower - 1e-9 <= X) & (chain.box.upper + 1e-9 >= X)).all(axis=1)].reshape(-1, chain.n)
+
+
+def away(chain: mik.Chain, X: Floats, known: Floats) -> Floats:
+    """(s,) how far each of X (s, n) is from the nearest that is known (k, n), in its worst coordinate."""
+    if not len(known):
+        return np.full(len(X), np.inf)
+    ways = np.abs(X[:, None] - known)
+    ways = np.where(chain.limits.rotates, np.abs(ways - 2.0 * np.pi * np.round(ways / (2.0 * np.pi))), ways)
+    return np.asarray(ways.max(axis=2).min(axis=1))
+
+
+def descents(problem: IKProblem, rng: np.random.Generator, count: int) -> Floats:
+    """Distinct solutions (s, n) that so many descents from random coordinates come to."""
+    found = np.empty((MOST, problem.chain.n))
+    starts = problem.box.sample(rng, count)
+    _, known, _ = DLS().descent().gather(problem, starts, found, 0, APART, count, 10**9, branch=False)
+    return found[:known]
+
+
+def union(chain: mik.Chain, sets: list[Floats]) -> Floats:
+    """Each solution of several sets once."""
+    every = np.empty((0, chain.n))
+    for x in np.concatenate(sets):
+        if away(chain, x[None], every)[0] > APART:
+            every = np.vstack([every, x])
+    return every
+
+
+def target(pose: Floats) -> mik.Target:
+    return mik.Target(pin.SE3(pose), position_tolerance=EXACT, orientation_tolerance=EXACT)
+
+
+def six(options: argparse.Namespace) -> list[str]:
+    """All solutions of arms of six joints."""
+    lines = [
+        f"{options.random} random and {options.singular} near-singular poses an arm (det J = 0, then each joint moved "
+        f"by up to {NEAR:g}), to {EXACT:g} m and rad, inside the limits. *Solutions*: of the union of all solvers and "
+        f"of {options.descents:,} random descents a pose, but for points of a curve (least singular value below "
+        f"{ON_CURVE:g}); *missed*: of these, at random and near-singular poses, by `solve_ik_all` and by its peers "
+        "where they take the arm; *wrong*: not accepted by Pinocchio. *Called complete*: share of the random poses, by "
+        "what proves it; *contradicted*: such sets that the union has more than. Times are medians of the random "
+        "poses, the quicker of two calls a pose, solver by solver: without boxes (`certify=False`), and with.",
+        "",
+        "| arm | solutions | missed | wrong | called complete | contradicted | us | us with boxes | peers |",
+        "|---|---:|---:|---:|---:|---:|---:|---:|---|",
+    ]
+    for name in options.arms or SIX:
+        with suppress(ImportError):
+            lines.append(six_row(name, options))
+            print(lines[-1], flush=True)
+    return lines
+
+
+def six_row(name: str, options: argparse.Namespace) -> str:
+    """The row of one arm."""
+    chain, rng = chain_of(name), np.random.default_rng(11)
+    others = dict(peers(chain, name))
+    counts = {solver: Count() for solver in ["ours", "boxes", *others]}
+    total, proofs, contradicted = {"random": 0, "singular": 0}, dict.fromkeys(mik.Proof, 0), 0
+    places = {"random": chain.box.sample(rng, options.random)}
+    places["singular"] = np.array([singular(chain, rng) for _ in range(options.singular)]).reshape(-1, chain.n)
+    for warm in places["random"][:3]:
+        mik.solve_ik_all(chain, chain.poses(warm)[0, 0])
+    for family, X in places.items():
+        for x in X:
+            pose = chain.poses(x)[0, 0]
+            goal, answers = target(pose), {}
+            problem = IKProblem.of(chain, goal)
+
+            def timed(solver: str, solve: Callable[[], Any], family: str = family) -> Any:
+                took = []
+                for _ in range(1 if family == "singular" else CALLS):
+                    began = time.perf_counter()
+                    found = solve()
+                    took.append(time.perf_counter() - began)
+                counts[solver].times += [min(took)] if family == "random" else []
+                return found
+
+            quick = timed("ours", lambda goal=goal: mik.solve_ik_all(chain, goal, certify=False))
+            proved = timed("boxes", lambda goal=goal: mik.solve_ik_all(chain, goal))
+            answers["ours"], answers["boxes"] = quick.x, proved.x
+            for solver, solve in others.items():
+                answers[solver] = inside(chain, timed(solver, lambda solve=solve, pose=pose: solve(pose)))
+            for solver, found in answers.items():
+                good = np.array([problem.accepts(q) for q in chain.q(chain.limits.clip(found))], dtype=bool)
+                counts[solver].wrong += int((~good).sum())
+                answers[solver] = found[good]
+            every = union(chain, [*answers.values(), descents(problem, rng, options.descents), x[None]])
+            every = every[[singular_values(problem.linearize(one)[1])[-1] > ON_CURVE for one in every]]
+            total[family] += len(every)
+            for solver, found in answers.items():
+                counts[solver].missed[family] += int((away(chain, every, found) > APART).sum())
+            if proved.complete is not None:
+                proofs[proved.complete] += family == "random"
+                contradicted += bool((away(chain, every, proved.x) > 2.0 * APART).any())
+    ours, boxes = counts["ours"], counts["boxes"]
+    shares = ", ".join(f"{count / options.random:.1%} {proof}" for proof, count in proofs.items() if count)
+    theirs = "; ".join(
+        f"{solver}: missed {of(counts[solver].missed)}, wrong {counts[solver].wrong}, {us(counts[solver])} us"
+        for solver in others
+    )
+    return (
+        f"| {name} | {of(total)} | {of(ours.missed)}, with boxes {of(boxes.missed)} | {ours.wrong + boxes.wrong} "
+        f"| {shares or 'none'} | {contradicted} | {us(ours)} | {us(boxes)} | {theirs or 'none'} |"
+    )
+
+
+def of(counted: dict[str, int]) -> str:
+    return f"{counted['random']:,} + {counted['singular']:,}"
+
+
+def us(count: Count) -> str:
+    return f"{1e6 * np.median(count.times):.0f}"
+
+
+def seven(options: argparse.Namespace) -> list[str]:
+    """All self-motions of arms of seven joints."""
+    lines = [
+        f"{options.poses} random poses an arm, `self_motions` at a resolution of {options.resolution:g} rad. "
+        f"*Proved*: share of the poses where boxes cover all solutions. *Off*: of the solutions that "
+        f"{options.descents:,} random descents a pose come to, those farther than {APART:g} rad in some joint from "
+        "all curves. *Nearest*: poses where the nearest point of all curves to a random configuration is no farther "
+        "than the best of these solutions. *Select*: median of `solve_ik` with `select='nearest'`.",
+        "",
+        "| arm | curves a pose | closed | proved | by descents | off | nearest | ms, median | 90 % | select, ms |",
+        "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|",
+    ]
+    for name in options.arms or SEVEN:
+        with suppress(ImportError):
+            lines.append(seven_row(name, options))
+            print(lines[-1], flush=True)
+    return lines
+
+
+def seven_row(name: str, options: argparse.Namespace) -> str:
+    """The row of one arm."""
+    chain, rng = chain_of(name), np.random.default_rng(12)
+    times, chosen, curves, closed, proved, seen, off, nearest = [], [], 0, 0, 0, 0, 0, 0
+    mik.self_motions(chain, chain.poses(chain.box.sample(rng, 1))[0, 0])
+    solver = mik.IKSolver(select="nearest")
+    for x in chain.box.sample(rng, options.poses):
+        pose, q0 = chain.poses(x)[0, 0], chain.q(chain.box.sample(rng, 1)[0])
+        began = time.perf_counter()
+        motions = mik.self_motions(chain, pose, q0, resolution=options.resolution)
+        times.append(1e3 * (time.perf_counter() - began))
+        began = time.perf_counter()
+        mik.solve_ik(chain, pose, q0, solver=solver)
+        chosen.append(1e3 * (time.perf_counter() - began))
+        curves, closed = curves + len(motions), closed + sum(curve.closed for curve in motions)
+        proved += motions.complete is not None
+        found = descents(IKProblem.of(chain, target(pose)), rng, options.descents)
+        seen += len(found)
+        points = [chain.x(curve.sample(0.5 * APART)) for curve in motions]
+        off += int((away(chain, found, np.concatenate([np.empty((0, chain.n)), *points])) > APART).sum())
+        best = mik.IKProblem.of(chain, pose).limits.separation(found, chain.x(q0)) if len(found) else np.inf
+        nearest += motions.nearest(q0).value <= np.min(np.linalg.norm(np.atleast_2d(best), axis=-1)) + 1e-4
+    count = options.poses
+    return (
+        f"| {name} | {curves / count:.1f} | {closed / count:.1f} | {proved / count:.1%} | {seen:,} | {off} "
+        f"| {nearest} of {count} | {np.median(times):.0f} | {np.quantile(times, 0.9):.0f} | {np.median(chosen):.0f} |"
+    )
+
+
+SECTIONS: dict[str, tuple[str, Callable[[argparse.Namespace], list[str]]]] = {
+    "six": ("Six joints", six),
+    "seven": ("Seven joints", seven),
+}
+
+
+def main() -> None:
+    """Measure the sections named and write them into the page, one after the other."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("sections", nargs="*", choices=[[], *SECTIONS], metavar="SECTION", help=", ".join(SECTIONS))
+    parser.add_argument("--arms", nargs="*", help="default: all of the section")
+    parser.add_argument("--random", type=int, default=500, help="poses of each arm of six joints")
+    parser.add_argument("--singular", type=int, default=200, help="near-singular poses of each")
+    parser.add_argument("--poses", type=int, default=200, help="of each arm of seven joints")
+    parser.add_argument("--descents", type=int, default=5_000, help="of each pose")
+    parser.add_argument("--resolution", type=float, default=0.2, help="of self-motions, rad")
+    parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".md"))
+    options = parser.parse_args()
+    for name in options.sections or SECTIONS:
+        title, measure = SECTIONS[name]
+        lines = [conditions(("ssik", "eaik")), "", *measure(options)]
+        page = options.out.read_text(encoding="utf-8") if options.out.exists() else ""
+        titles = [title for title, _ in SECTIONS.values()]
+        options.out.write_text(page_with(page, "# All solutions", titles, title, lines), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,50 @@
+"""What joints must hold against gravity, as a criterion for choosing among solutions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import ArrayLike
+
+from pin_metaik.arguments import array, checked, number
+from pin_metaik.arrays import Array
+from pin_metaik.errors import InvalidSetting
+from pin_metaik.kinematics import Chain
+
+
+@checked
+def gravity_torque(chain: Chain, payload: float = 0.0, at: ArrayLike = (0.0, 0.0, 0.0)) -> Callable[[Array], float]:
+    """The size of the torques (N m) and forces (N) with which a chain's joints stand still: Pinocchio's g(q).
+
+    Args:
+        chain: Whose joints count; the masses of the whole model do.
+        payload: kg, held by the chain's frame.
+        at: (3,) its centre of mass in that frame, m.
+
+    Returns:
+        A criterion: a number for a configuration (nq,), lower is better, for ``IKSolver(select=...)`` and
+        ``SelfMotions.best``.
+
+    Raises:
+        InvalidSetting: If nothing has a mass, or the payload is below 0, or ``at`` is not (3,).
+    """
+    mass, place = number("payload", payload), array("at", at, 3, error=InvalidSetting)
+    model, frame = chain.model, chain.frame_ids[0]
+    if mass < 0.0:
+        raise InvalidSetting(f"payload is a mass of at least 0 kg, got {mass:g}")
+    if mass == 0.0 and not any(inertia.mass > 0.0 for inertia in list(model.inertias)[1:]):
+        raise InvalidSetting(f"the bodies of {model.name!r} have no mass: give a payload, or a model with inertias")
+    weight = -mass * np.asarray(model.gravity.linear)
+
+    def torque(q: Array) -> float:
+        data = chain.data
+        held = np.array(pin.computeGeneralizedGravity(model, data, q))
+        if mass > 0.0:
+            J = pin.computeFrameJacobian(model, data, q, frame, pin.ReferenceFrame.LOCAL)
+            turn = pin.updateFramePlacement(model, data, frame).rotation
+            held += (turn @ (J[:3] - pin.skew(place) @ J[3:])).T @ weight
+        return float(np.linalg.norm(held @ chain.tangent(chain.x(q))))
+
+    return torque

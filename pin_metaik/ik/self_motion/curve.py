@@ -1,0 +1,279 @@
+"""One self-motion of a redundant chain: a curve of solutions, from end to end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import StrEnum
+from functools import cached_property
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pin_metaik.arguments import array, checked
+from pin_metaik.arrays import Array
+from pin_metaik.collision import CollisionWorld
+from pin_metaik.errors import InvalidConfiguration, InvalidSetting
+from pin_metaik.ik.criteria import Criterion, measure_of
+from pin_metaik.ik.problem import IKProblem, check_world
+from pin_metaik.optimize.settings import positive
+
+Values: TypeAlias = Callable[[Array], Array]  # of coordinates (k, n)
+
+GOLDEN = 0.5 * (5.0**0.5 - 1.0)
+NEAR, SHARP = (
+    1e-4,
+    1e-8,
+)  # how far a least value may be off before it is sharpened; width of its interval then, rad or m
+BISECTIONS = 20  # of the place where a curve runs into an obstacle
+
+
+class EndReason(StrEnum):
+    """Why a self-motion goes no farther."""
+
+    LIMIT = "LIMIT"
+    """A joint is at a limit."""
+    CLOSED = "CLOSED"
+    """It has come back to where it began."""
+    SINGULARITY = "SINGULARITY"
+    """The Jacobian loses rank: curves meet, or a curve turns back in a point."""
+
+
+class CurveEnd(NamedTuple):
+    """One end of a self-motion.
+
+    Attributes:
+        reason: Why it ends.
+        joint: The joint at its limit; None if there is none.
+        upper: Whether that is its upper limit.
+    """
+
+    reason: EndReason
+    joint: str | None = None
+    upper: bool = False
+
+    def __str__(self) -> str:
+        return self.reason if self.joint is None else f"{self.joint} at its {'upper' if self.upper else 'lower'} limit"
+
+
+class CurvePoint(NamedTuple):
+    """A place on a self-motion, and what a criterion says of it.
+
+    Attributes:
+        t: Where on the curve, rad or m of joint motion from its beginning.
+        q: (nq,) the configuration.
+        value: Of the criterion; lower is better.
+    """
+
+    t: float
+    q: Array
+    value: float
+
+
+@dataclass(frozen=True, eq=False)
+class SelfMotionCurve:
+    """All solutions that a chain with one spare degree of freedom reaches while its frame stands still.
+
+    A connected component of the self-motion manifold (Burdick 1989) inside the limits. Coordinates whose limits leave
+    room for a whole turn are taken as angles on a circle: they end no curve, and come as the copy nearest to ``q0``.
+
+    Attributes:
+        problem: The target, to be met exactly.
+        base: (nq,) the joints that do not move, and what copies are nearest to.
+        x: (k, n) coordinates of points on the curve, in order; angles on a circle without jumps.
+        t: (k,) how far the joints have moved up to each: the sum of the distances between the points, rad and m alike.
+        ends: Of the beginning and of the end.
+    """
+
+    problem: IKProblem = field(repr=False)
+    base: Array = field(repr=False)
+    x: Array = field(repr=False)
+    t: Array = field(repr=False)
+    ends: tuple[CurveEnd, CurveEnd]
+    _tangents: Array = field(repr=False)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON: configurations of the points, lengths in m, angles in rad."""
+        ends = [{"reason": end.reason.value, "joint": end.joint, "upper": end.upper} for end in self.ends]
+        return {"q": self.q(self.t).tolist(), "t": self.t.tolist(), "ends": ends}
+
+    @property
+    def closed(self) -> bool:
+        """Whether it comes back to where it began."""
+        return self.ends[0].reason is EndReason.CLOSED
+
+    @property
+    def length(self) -> float:
+        """How far the joints move from end to end, rad and m alike."""
+        return float(self.t[-1])
+
+    def q(self, t: ArrayLike) -> Array:
+        """Configurations (..., nq) at t (...), from 0 to ``length``; round and round on a closed curve.
+
+        Raises:
+            InvalidSetting: If t is not finite.
+        """
+        places = array("t", t, "...", error=InvalidSetting)
+        X = self._turned(self._at(np.atleast_1d(places).ravel()))
+        return self.problem.chain.q(X, self.base).reshape(*places.shape, self.problem.chain.model.nq)
+
+    def sample(self, step: float) -> Array:
+        """Configurations (k, nq), at most ``step`` (rad and m alike) of joint motion from one to the next.
+
+        Raises:
+            InvalidSetting: If the step is not above zero.
+        """
+        positive("step", step)
+        return self.q(np.linspace(0.0, self.length, 1 + int(np.ceil(self.length / step))))
+
+    def nearest(self, q: ArrayLike) -> CurvePoint:
+        """The point with the least distance from a configuration (nq,), rad and m alike; angles the shorter way round.
+
+        It is the nearest of the whole curve, to 1e-4: a distance changes by no more than the joints move.
+        """
+        x = self.problem.chain.x(array("q", q, self.problem.chain.model.nq, error=InvalidConfiguration))
+        measure = measure_of("nearest")
+        return self._least(lambda X: measure(self.problem, X, x), 1.0)
+
+    @checked
+    def best(self, criterion: str | Criterion) -> CurvePoint:
+        """The point where a criterion is least.
+
+        Args:
+            criterion: As for ``IKSolver.select``: a name, or a function of a configuration (nq,). For ``"nearest"`` (to
+                ``q0``) and ``"limits"`` it is the best of the whole curve, to 1e-4; others are looked at in every point
+                ``x``, and between the neighbours of each that is better than these.
+
+        Raises:
+            UnknownName: No criterion of that name.
+            InvalidSetting: The function takes no configuration, or gives no number.
+        """
+        measure = measure_of(criterion)
+        if not isinstance(criterion, str):
+            try:
+                criterion(self.q(0.0))
+            except TypeError as error:
+                raise InvalidSetting(f"criterion is a function of a configuration q (nq,), but: {error}") from error
+        return self._least(lambda X: measure(self.problem, self._turned(X), self._x0), self._rate(criterion))
+
+    def free(self, world: CollisionWorld, step: float = 0.02) -> list[tuple[float, float]]:
+        """Intervals (from, to) of t without a collision, as far as points at most ``step`` apart show.
+
+        Raises:
+            InvalidSetting: If the world is another model's, or the step is not above zero.
+        """
+        check_world(self.problem.chain, world)
+        positive("step", step)
+        count = 1 + max(1, int(np.ceil(self.length / step)))
+        places = np.linspace(0.0, self.length, count)
+
+        def clear(t: float) -> bool:
+            return not world.checker.collides(self.q(t))
+
+        def border(inside: float, outside: float) -> float:
+            for _ in range(BISECTIONS):
+                middle = 0.5 * (inside + outside)
+                inside, outside = (middle, outside) if clear(middle) else (inside, middle)
+            return inside
+
+        is_clear = [clear(t) for t in places]
+        found: list[tuple[float, float]] = []
+        begin = places[0] if is_clear[0] else None
+        for i in range(1, count):
+            if is_clear[i] and not is_clear[i - 1]:
+                begin = border(places[i], places[i - 1])
+            elif is_clear[i - 1] and not is_clear[i]:
+                assert begin is not None
+                found.append((float(begin), border(places[i - 1], places[i])))
+        if is_clear[-1] and begin is not None:
+            found.append((float(begin), self.length))
+        return found
+
+    def _turned(self, X: Array) -> Array:
+        """Coordinates (k, n) inside the limits, angles on a circle as the copy nearest to ``q0``."""
+        limits = self.problem.limits
+        return np.where(limits.winds, limits.nearest_turns(X, self._x0), limits.clip(X))
+
+    def _rate(self, criterion: str | Criterion) -> float | None:
+        """How much a criterion changes at most for each unit of joint motion; None: nothing is known."""
+        if criterion == "nearest":
+            return 1.0
+        limits = self.problem.limits
+        spans = (limits.upper - limits.lower)[np.isfinite(limits.upper - limits.lower) & ~limits.winds]
+        return 2.0 / float(spans.min()) if criterion == "limits" and len(spans) and not limits.winds.any() else None
+
+    @cached_property
+    def _x0(self) -> Array:
+        return self.problem.chain.x(self.base)
+
+    def _at(self, t: Array) -> Array:
+        """Coordinates (k, n) at t (k,): between two points by Hermite's cubic, put back onto the curve."""
+        from pin_metaik.kinematics.self_motion.trace import put_back
+
+        t = t % self.length if self.closed else np.clip(t, 0.0, self.length)
+        i = np.clip(np.searchsorted(self.t, t, side="right") - 1, 0, len(self.t) - 2)
+        h = (self.t[i + 1] - self.t[i])[:, None]
+        s = (t - self.t[i])[:, None] / h
+        a, b, u, v = self.x[i], self.x[i + 1], h * self._tangents[i], h * self._tangents[i + 1]
+        X = a + s * (u + s * (3.0 * (b - a) - 2.0 * u - v + s * (u + v - 2.0 * (b - a))))
+        across = np.where(s < 0.5, self._tangents[i], self._tangents[i + 1])
+        problem = self.problem
+        put_back(problem.chain.bare, problem.records, problem.kernel_rows, X, across)
+        return X
+
+    def _least(self, values: Values, rate: float | None) -> CurvePoint:
+        """Where values are least; ``rate`` bounds how much they change for each unit of t, None: nothing does."""
+        spans = self._lows(values) if rate is None else self._below(values, rate)
+        t, value = min((self._sharpened(values, *span) for span in spans), key=_value)
+        return CurvePoint(t, self.q(t), value)
+
+    def _lows(self, values: Values) -> list[tuple[float, float]]:
+        """The spans round each point whose value is no greater than its neighbours'."""
+        known = values(self.x)
+        left, right = np.append(np.inf, known[:-1]), np.append(known[1:], np.inf)
+        last = len(known) - 1
+        lows = np.flatnonzero((known <= left) & (known <= right)).tolist()
+        return [(float(self.t[max(i - 1, 0)]), float(self.t[min(i + 1, last)])) for i in lows]
+
+    def _below(self, values: Values, rate: float) -> list[tuple[float, float]]:
+        """A span round the least value: others cannot be less by more than NEAR (Piyavskii 1972)."""
+        f = values(self.x)
+        a, b, fa, fb = self.t[:-1], self.t[1:], f[:-1], f[1:]
+        best, at = float(f.min()), float(self.t[int(np.argmin(f))])
+        while True:
+            hopeful = 0.5 * (fa + fb - rate * (b - a)) < best - NEAR
+            a, b, fa, fb = a[hopeful], b[hopeful], fa[hopeful], fb[hopeful]
+            if not len(a):
+                break
+            middle = 0.5 * (a + b)
+            f = values(self._at(middle))
+            if f.min() < best:
+                best, at = float(f.min()), float(middle[int(np.argmin(f))])
+            a, b = np.append(a, middle), np.append(middle, b)
+            fa, fb = np.append(fa, f), np.append(f, fb)
+        width = min(float(np.diff(self.t).max()), 2.0 * NEAR / rate + 1e-3)
+        return [(max(at - width, 0.0), min(at + width, self.length))]
+
+    def _sharpened(self, values: Values, a: float, b: float) -> tuple[float, float]:
+        """Where values are least between a and b, by golden sections, and how much they are there."""
+
+        def value(t: float) -> float:
+            return float(values(self._at(np.array([t])))[0])
+
+        c, d = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
+        fc, fd = value(c), value(d)
+        while b - a > SHARP:
+            if fc < fd:
+                b, d, fd = d, c, fc
+                c = b - GOLDEN * (b - a)
+                fc = value(c)
+            else:
+                a, c, fc = c, d, fd
+                d = a + GOLDEN * (b - a)
+                fd = value(d)
+        return min(((t, value(t)) for t in (a, b, c, d)), key=_value)
+
+
+def _value(place: tuple[float, float]) -> float:
+    return place[1]

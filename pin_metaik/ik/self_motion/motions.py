@@ -1,0 +1,374 @@
+"""All self-motions of a target: every curve of solutions inside the limits, and what proves that none is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pin_metaik.arguments import checked
+from pin_metaik.arrays import Array
+from pin_metaik.errors import InvalidBudget, InvalidSetting
+from pin_metaik.ik.criteria import Criterion
+from pin_metaik.ik.goals.pose import TargetLike
+from pin_metaik.ik.problem import IKProblem
+from pin_metaik.ik.proof import Proof
+from pin_metaik.ik.refine import DLS
+from pin_metaik.ik.self_motion.curve import CurveEnd, CurvePoint, EndReason, SelfMotionCurve
+from pin_metaik.kinematics import Chain
+from pin_metaik.kinematics.kernel.layout import ALIGNED, NEAR, SLACK, WEIGHT
+from pin_metaik.kinematics.proofs.boxes import Boxes
+from pin_metaik.optimize import Budget
+from pin_metaik.optimize.settings import positive
+from pin_metaik.plain import fields_of
+from pin_metaik.randomness import DEFAULT_SEED
+from pin_metaik.watching import Progress, Stopped, Watch, tell
+
+MOTION_BUDGET = Budget(evaluations=400_000)
+RESOLUTION = 0.3  # rad or m
+EXACT = 1e-9  # m and rad, how closely curves keep to the target
+STEP = 0.05  # rad or m between the points of a curve, at most
+POINTS = 20_000  # of a curve at most
+CHUNK, MOST = 4_096, 8_192  # boxes looked at, and kept, at a time; kept in all
+FINER = 8.0, 64.0, 512.0  # by how much smaller boxes that are far from all curves are looked at
+SEEDS = 512  # solutions to follow curves from, at a time
+LOOKED_UP, DRAWN, SEED = 128, 512, (DEFAULT_SEED, 0)  # configurations to descend from where boxes have no end
+SAME = 5e-3  # rad or m: a solution this near to a curve is on it
+STRAIGHT = 1e-2  # triple product of a wrist's axes below which it is bent to neither side ...
+FLAT = 0.2  # ... and in the middle of a box, below which it may be straight somewhere in it
+TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True, eq=False)
+class SelfMotions:
+    """The self-motions of a chain with one spare degree of freedom for one target.
+
+    Attributes:
+        curves: The longest first.
+        complete: ``Proof.BOXES``: every solution inside the limits is within ``resolution`` of a point of one of the
+            curves, in every coordinate but those of a wrist whose axes meet, and with that wrist bent to the same side;
+            where the wrist is nearly straight its coordinates count, too. So a curve is missing only if it stays that
+            near to others. ``None``: nothing is proved.
+        resolution: rad or m.
+        evaluations: Forward kinematics computed, and boxes looked at.
+        seconds: Time taken, s.
+        interrupted: Whether a watch ended the search.
+    """
+
+    curves: tuple[SelfMotionCurve, ...]
+    complete: Proof | None
+    resolution: float
+    evaluations: int
+    seconds: float
+    interrupted: bool = False
+
+    def __len__(self) -> int:
+        return len(self.curves)
+
+    def __iter__(self) -> Iterator[SelfMotionCurve]:
+        return iter(self.curves)
+
+    def nearest(self, q: ArrayLike) -> CurvePoint:
+        """The point of all curves with the least distance from a configuration (nq,); see ``SelfMotionCurve.nearest``.
+
+        Raises:
+            InvalidSetting: There is no curve.
+        """
+        return min((curve.nearest(q) for curve in self._some()), key=_value)
+
+    @checked
+    def best(self, criterion: str | Criterion) -> CurvePoint:
+        """The point of all curves where a criterion is least; see ``SelfMotionCurve.best``.
+
+        Raises:
+            InvalidSetting: There is no curve.
+        """
+        return min((curve.best(criterion) for curve in self._some()), key=_value)
+
+    def _some(self) -> tuple[SelfMotionCurve, ...]:
+        if not self.curves:
+            raise InvalidSetting("there is no self-motion to choose from: the target has no solution that was found")
+        return self.curves
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON: lengths in m, angles in rad."""
+        plain = fields_of(self, "complete", "resolution", "interrupted", "evaluations", "seconds")
+        return {"curves": [curve.as_dict() for curve in self.curves], **plain}
+
+
+def _value(point: CurvePoint) -> float:
+    return point.value
+
+
+@checked
+def self_motions(
+    chain: Chain,
+    target: TargetLike | Sequence[TargetLike],
+    q0: ArrayLike | None = None,
+    *,
+    resolution: float = RESOLUTION,
+    budget: Budget = MOTION_BUDGET,
+    watch: Watch | None = None,
+) -> SelfMotions:
+    """Find every curve of solutions of a target that leaves a chain one spare degree of freedom.
+
+    Boxes of configurations that are not excluded cover all solutions. A descent from each that no known curve comes
+    near leads to a point of another curve, which is followed both ways to its ends.
+
+    Args:
+        chain: The joints to move and the frame to place.
+        target: As for ``solve_ik``, with one axis less that counts than the chain has coordinates. Curves keep to
+            the middle of its tolerances.
+        q0: (nq,) configuration that has the joints outside the chain and the locked ones, and that copies by whole
+            turns are nearest to; default: the chain's reference.
+        resolution: rad or m; how near to known curves one that is missing must stay.
+        budget: Evaluations that may be spent, and seconds.
+        watch: Called between boxes with evaluations spent and allowed; True ends the search.
+
+    Raises:
+        InvalidTarget: If the target is not a pose, position or orientation.
+        InvalidConfiguration: If ``q0`` is not a configuration of the model.
+        InvalidSetting: If the chain has none or several spare degrees of freedom, or ``resolution`` is not above zero.
+        InvalidBudget: If the budget has no limit on evaluations.
+    """
+    positive("resolution", resolution)
+    if budget.evaluations is None:
+        raise InvalidBudget("finding self-motions needs a budget of evaluations: Budget(evaluations=...)")
+    chain = chain if q0 is None else chain.at(q0)
+    problem = exactly(IKProblem.of(chain, target))
+    if not has_curves(problem):
+        spare = chain.n - problem.m
+        raise InvalidSetting(
+            f"self-motions are curves where one coordinate is spare and one frame is placed; here {spare} are, of "
+            f"{len(chain.frames)} frames: solve_ik_all samples the solutions"
+        )
+    base = chain.reference if q0 is None else chain.configuration(q0)
+    return find_self_motions(problem, base, resolution, budget, watch)
+
+
+def has_curves(problem: IKProblem) -> bool:
+    """Whether a problem's solutions are curves: one frame, one spare coordinate, and nothing but a target."""
+    return len(problem.targets) == 1 and problem.chain.n == problem.m + 1 and not problem.goals
+
+
+def exactly(problem: IKProblem) -> IKProblem:
+    """The same problem in the middle of its tolerances."""
+    records = problem.records.copy()
+    slacks = records[:, SLACK:WEIGHT]
+    records[:, SLACK:WEIGHT] = np.where(np.isfinite(slacks), 0.0, np.inf)
+    records[:, [NEAR, ALIGNED]] = np.where(np.isfinite(records[:, [NEAR, ALIGNED]]), EXACT, np.inf)
+    return replace(problem, records=records)
+
+
+def find_self_motions(
+    problem: IKProblem, base: Array, resolution: float, budget: Budget, watch: Watch | None = None
+) -> SelfMotions:
+    """``self_motions`` of a problem that has curves, to be met exactly."""
+    began = perf_counter()
+    search = _Search(problem, base, resolution, budget, watch)
+    interrupted = False
+    try:
+        search.run()
+    except Stopped:
+        interrupted = True
+    curves = tuple(sorted(search.curves, key=lambda curve: -curve.length))
+    complete = Proof.BOXES if search.covered and not interrupted else None
+    return SelfMotions(curves, complete, resolution, search.spent, perf_counter() - began, interrupted)
+
+
+class _Search:
+    """The curves of one problem, as they are found.
+
+    Attributes:
+        curves: So far.
+        spent: Evaluations and boxes so far.
+        covered: Whether every box that may hold a solution is near a curve.
+    """
+
+    def __init__(self, problem: IKProblem, base: Array, resolution: float, budget: Budget, watch: Watch | None) -> None:
+        limits = problem.limits
+        self.curves: list[SelfMotionCurve] = []
+        self.spent, self.covered = 0, False
+        self._problem, self._base, self._resolution, self._watch = problem, base, resolution, watch
+        self._total = budget.evaluations or 0
+        self._until = np.inf if budget.seconds is None else perf_counter() + budget.seconds
+        self._winds = limits.winds
+        self._lower = np.where(limits.winds, -np.inf, limits.lower)
+        self._upper = np.where(limits.winds, np.inf, limits.upper)
+
+    def run(self) -> None:
+        """Cover the limits with boxes, and find the curves that go through those that are kept.
+
+        Where there is no end of boxes, curves are found from an atlas and at random.
+        """
+        target, chain = self._problem.targets[0], self._problem.chain
+        free = not target.counts[3], not target.counts[4], not target.counts[5]
+        near = 0.0 if all(target.counts[:3]) else np.inf
+        boxes = None
+        if near == 0.0 or sum(free) < 2:
+            boxes = chain._boxes(0, target.pose.homogeneous, near, 0.0, free, least=0.5 * self._resolution)
+        if boxes is not None:
+            self.covered = self._are_covered(boxes)
+        if not self.covered:
+            self._from(
+                np.concatenate([self._problem.near(LOOKED_UP), chain.sample(DRAWN, SEED)]), 0.5 * self._resolution
+            )
+
+    def _are_covered(self, boxes: Boxes) -> bool:
+        """Find the curves of all boxes; whether there is one near all that are kept.
+
+        A wrist is bent to one side and then to the other. Where it is nearly straight, its first and last joint may
+        turn against each other while no other one moves: there its joints count, and are split, like all others.
+        """
+        if not len(boxes.arm.wrist):
+            return self._is_covered(boxes, self._kept(boxes), None)
+        covered, straight = True, []
+        for side in (0, 1):
+            part = boxes.bent(side)
+            kept = self._kept(part)
+            if kept is None:
+                return False
+            flat = np.abs(self._bends(part, kept[:, : self._problem.chain.n])) < FLAT
+            covered = self._is_covered(part, kept[~flat], side) and covered
+            straight.append(kept[flat])
+        rest = boxes.among(np.concatenate(straight), boxes.least).split()
+        return self._is_covered(rest, self._kept(rest), None) and covered
+
+    def _is_covered(self, boxes: Boxes, kept: Array | None, side: int | None) -> bool:
+        """The same of boxes (k, 2 m) that are kept, with a wrist bent to one side; None is no end of them.
+
+        Descents start from all of them, and those that are far from all curves then are split again, as exclusion is
+        weak where boxes are large.
+        """
+        if kept is None:
+            return False
+        self._from(kept[:, : self._problem.chain.n], boxes.least)
+        far = kept[~self._is_near(boxes, kept, side)]
+        for finer in FINER:
+            if not len(far):
+                return True
+            boxes = boxes.among(far, 0.5 * self._resolution / finer)
+            found = self._kept(boxes)
+            if found is None:
+                return False
+            far = found[~self._is_near(boxes, found, side)]
+            self._from(far[:, : self._problem.chain.n], boxes.least)
+            far = far[~self._is_near(boxes, far, side)]
+        return not len(far)
+
+    def _kept(self, boxes: Boxes) -> Array | None:
+        """Boxes (k, 2 m) that are kept; None, if the budget ends before, or there is no end of them."""
+        kept: list[Array] = []
+        while not boxes.done:
+            before = boxes.looked
+            if self._left == 0 or perf_counter() > self._until or sum(map(len, kept)) >= MOST:
+                return None
+            kept.append(boxes.look(min(CHUNK, self._left), CHUNK))
+            self.spent += boxes.looked - before
+            tell(self._watch, Progress(self.spent, self._total))
+        return np.concatenate(kept) if kept else np.empty((0, boxes.arm.whole.shape[1]))
+
+    def _is_near(self, boxes: Boxes, kept: Array, side: int | None) -> NDArray[np.bool_]:
+        """(k,) whether all of each box (k, 2 m) is within the resolution of a point of a curve.
+
+        Coordinates of a wrist are left out, but the point must have it bent to the same side, or nearly straight.
+        """
+        from pin_metaik.kinematics.self_motion.near import mark_near
+
+        counts = np.setdiff1d(np.arange(self._problem.chain.n), boxes.arm.wrist)
+        near = np.zeros(len(kept), np.int64)
+        for curve in self.curves:
+            x = np.ascontiguousarray(curve.x[self._is_bent(boxes, curve, side)])
+            mark_near(np.ascontiguousarray(kept), x, counts, self._winds.astype(np.int64), self._resolution, near)
+        marked: NDArray[np.bool_] = near == 1
+        return marked
+
+    def _is_bent(self, boxes: Boxes, curve: SelfMotionCurve, side: int | None) -> NDArray[np.bool_]:
+        """(k,) whether a wrist is bent to one side, or nearly straight, at each point of a curve."""
+        if side is None:
+            return np.ones(len(curve.x), bool)
+        bent = self._bends(boxes, curve.x)
+        found: NDArray[np.bool_] = bent < STRAIGHT if side == 0 else bent > -STRAIGHT
+        return found
+
+    def _bends(self, boxes: Boxes, X: Array) -> Array:
+        """Triple product (k,) of a wrist's axes at coordinates X (k, n): 0 where it is straight."""
+        from pin_metaik.kinematics.self_motion.near import bends
+
+        joints, wiring, _, tip, *_ = boxes.arm.arrays
+        bent = np.empty(len(X))
+        bends(joints, wiring, tip, np.ascontiguousarray(X), bent)
+        return bent
+
+    @property
+    def _left(self) -> int:
+        """Evaluations and boxes left."""
+        return max(0, self._total - self.spent)
+
+    def _from(self, starts: Array, apart: float) -> None:
+        """Descend from starts (s, n) to solutions that are so far apart, and follow the curves that are new."""
+        found = np.empty((min(len(starts), SEEDS), self._problem.chain.n))
+        starts = self._problem.limits.clip(starts)
+        spent, known, _ = (
+            DLS().descent().gather(self._problem, starts, found, 0, apart, len(starts) + 1, self._left, branch=False)
+        )
+        self.spent += spent
+        for x in found[:known]:
+            if not any(self._is_on(curve, x) for curve in self.curves):
+                curve = self._followed(x)
+                self.curves += [] if curve is None else [curve]
+
+    def _is_on(self, curve: SelfMotionCurve, x: Array) -> bool:
+        """Whether coordinates x (n,) lie on a curve: near to the line from one of its points to the next."""
+        from pin_metaik.kinematics.self_motion.near import is_on_curve
+
+        return bool(is_on_curve(x, curve.x, self._winds.astype(np.int64), SAME))
+
+    def _followed(self, x: Array) -> SelfMotionCurve | None:
+        """The curve through a solution x (n,), from end to end; None in a singularity, and for a point alone."""
+        first, last = self._trace(x, 1.0), None
+        if first is None:
+            return None
+        if first[2].reason is EndReason.CLOSED:
+            points, tangents, ends = first[0], first[1], (first[2], first[2])
+        else:
+            last = self._trace(x, -1.0)
+            if last is None:
+                return None
+            points = np.concatenate([last[0][:0:-1], first[0]])
+            tangents = np.concatenate([-last[1][:0:-1], first[1]])
+            ends = last[2], first[2]
+        t = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
+        if len(points) < 2 or t[-1] < SAME:
+            return None
+        return SelfMotionCurve(self._problem, self._base, points, t, ends, tangents)
+
+    def _trace(self, x: Array, way: float) -> tuple[Array, Array, CurveEnd] | None:
+        """Points (k, n) of the curve from x (n,) on, with their tangents, and how it ends; None in a singularity."""
+        from pin_metaik.kinematics.self_motion.trace import AT_LIMIT, CLOSED, put_back, trace
+
+        problem = self._problem
+        given = problem.chain.bare, problem.records, problem.kernel_rows
+        points, tangents = np.empty((POINTS, len(x))), np.empty((POINTS, len(x)))
+        start, tangent = x[None].copy(), null_direction(problem.linearize(x)[1])[None]
+        if put_back(*given, start, tangent) == 0:
+            return None
+        start[0] = np.clip(start[0], self._lower, self._upper)
+        tangents[0] = tangent[0]
+        winds = self._winds.astype(np.int64)
+        count, why, limit, spent = trace(*given, self._lower, self._upper, winds, start[0], way, STEP, points, tangents)
+        self.spent += spent
+        end = CurveEnd(EndReason.CLOSED if why == CLOSED else EndReason.SINGULARITY)
+        if why == AT_LIMIT:
+            end = CurveEnd(EndReason.LIMIT, problem.chain.names[limit // 2], bool(limit % 2))
+        return points[:count].copy(), tangents[:count].copy(), end
+
+
+def null_direction(J: Array) -> Array:
+    """The unit vector (n,) that a Jacobian, given as its transpose (n, n - 1), maps to zero."""
+    direction: Array = np.linalg.svd(J.T)[2][-1]
+    return np.ascontiguousarray(direction)
