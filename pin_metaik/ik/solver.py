@@ -265,7 +265,7 @@ class IKSolver:
         """Refine from x0 (n,), then from random starts; ``tried`` says that the first batch of them has been.
 
         The middle of the tolerances is tried first. Where they are loose, all further batches aim at all that is
-        accepted; where they are not, a last one does.
+        accepted; where they are not, a descent from the best of each batch does, and a last batch.
         """
         share = 1.0 - RESERVE if self._seeder is None else RESTART_SHARE
         batches = partial(start_batches, problem.chain, x0, rng, self.starts)
@@ -279,6 +279,8 @@ class IKSolver:
                         return
                 before = state.spent
                 state.add(first(aim, starts, state.left(share)))
+                if aim is problem and not state.over(share):  # the best compromise is mostly next to what is accepted
+                    state.add(descent.refine(problem.whole, state.x[None], state.left(share)))
                 if state.over(share) or state.spent == before:
                     return
                 first = descent.refine

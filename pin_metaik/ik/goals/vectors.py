@@ -37,7 +37,8 @@ def as_direction(name: str, given: Direction) -> Array:
     if isinstance(given, str):
         if given.removeprefix("-") not in AXES:
             raise InvalidTarget(f"{name} is x, y, z, -x, -y, -z or a vector (3,), got {shown(given)}")
-        return np.eye(3)[AXES[given[-1]]] * (-1.0 if given.startswith("-") else 1.0)
+        axis: Array = np.eye(3)[AXES[given[-1]]]
+        return -axis if given.startswith("-") else axis
     vector = array(name, given, 3, error=InvalidTarget)
     size = math.hypot(*vector)
     if not LEAST <= size < math.inf:
