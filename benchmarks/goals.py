@@ -95,8 +95,8 @@ def solved(options: argparse.Namespace) -> list[str]:
 def tolerances(options: argparse.Namespace) -> list[str]:
     """Targets that a configuration meets at 0.95 of a radius."""
     lines = [
-        f"{options.count:,} targets a cell: the pose of a random configuration, moved by 0.95 of the tolerance in a random "
-        "direction, position and orientation both. Solved, and verified by Pinocchio.",
+        f"{options.count:,} targets a cell: the pose of a random configuration, moved by 0.95 of the tolerance in a "
+        "random direction, position and orientation both. Solved, and verified by Pinocchio.",
         "",
         "| arm | " + " | ".join(f"{tolerance:g} m and rad" for tolerance in TOLERANCES) + " |",
         "|---|" + "---:|" * len(TOLERANCES),
@@ -129,8 +129,8 @@ def wishes(options: argparse.Namespace) -> list[str]:
     """Wishes beside a pose."""
     count = max(1, options.count // 10)
     lines = [
-        f"{count:,} feasible poses a row. How far the robot is from what is wished for, on average: without the wish, and "
-        "with it. The pose is met in all of them, or it says so.",
+        f"{count:,} feasible poses a row. How far the robot is from what is wished for, on average: without the wish, "
+        "and with it. The pose is met in all of them, or it says so.",
         "",
         "| robot | wish | unit | without | with | poses met | median, ms |",
         "|---|---|---|---:|---:|---:|---:|",

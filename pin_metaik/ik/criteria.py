@@ -106,6 +106,24 @@ def wished(problem: IKProblem, X: Array, x0: Array) -> Array:
     return missing
 
 
+def turned(problem: IKProblem, x: Array, x0: Array, measure: Measure) -> Array:
+    """Coordinates (n,) with each winding angle moved by whole turns to where the measure is least, the goals being met.
+
+    A pose does not depend on whole turns of a joint; postures and distances from limits do.
+    """
+    limits, best = problem.limits, float(measure(problem, x[None], x0)[0])
+    for c in np.flatnonzero(limits.winds & ~limits.periodic):
+        for turn in (2.0 * np.pi, -2.0 * np.pi):
+            while limits.lower[c] <= x[c] + turn <= limits.upper[c]:
+                tried = x.copy()
+                tried[c] += turn
+                value = float(measure(problem, tried[None], x0)[0])
+                if value >= best or not problem.goals.met(Placed(problem.chain, problem.chain.q(tried))):
+                    break
+                x, best = tried, value
+    return x
+
+
 def slide(problem: IKProblem, x: Array, x0: Array, measure: Measure, descent: Descent) -> Array:
     """Better coordinates (n,) by the measure, reached from a solution x (n,) without leaving the targets.
 

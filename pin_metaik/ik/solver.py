@@ -17,7 +17,7 @@ from pin_metaik.arguments import checked, instance
 from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.clearance import keep_clear
 from pin_metaik.ik.collect import collect
-from pin_metaik.ik.criteria import Criterion, Measure, measure_of, slide, wished
+from pin_metaik.ik.criteria import Criterion, Measure, measure_of, slide, turned, wished
 from pin_metaik.ik.exclude import FAR, FIRST, LONG, Exclusion
 from pin_metaik.ik.goals.pose import DEFAULT_TOLERANCE
 from pin_metaik.ik.plain_pose import solve_plain
@@ -216,6 +216,8 @@ class IKSolver:
             found = found[[problem.accepts(q) for q in problem.chain.q(found, base)]]
         if len(found):
             found = problem.limits.nearest_turns(found, x0)
+            if problem.wishes:
+                found = np.array([turned(problem, x, x0, wished) for x in found])
             best = found[np.argmin(measure(problem, found, x0))]
             better = slide(problem, best, x0, wished if problem.wishes else measure, self.descent)
             kept = problem.accepts(problem.chain.q(better, base))

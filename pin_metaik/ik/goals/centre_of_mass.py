@@ -14,6 +14,7 @@ from pin_metaik.errors import InvalidTarget
 from pin_metaik.ik.goals.bounded import Bounded
 from pin_metaik.ik.goals.placed import Placed
 from pin_metaik.ik.goals.vectors import check_range
+from pin_metaik.kinematics import Chain
 
 
 @checked_as(InvalidTarget)
@@ -53,6 +54,15 @@ class CentreOfMass(Bounded):
             edges = _edges_of(polygon, self.margin)
             object.__setattr__(self, "polygon", polygon.copy())
         object.__setattr__(self, "_edges", edges)
+
+    def check(self, chain: Chain) -> None:
+        """Whether the goal makes sense for a chain.
+
+        Raises:
+            InvalidTarget: If the robot has no mass.
+        """
+        if not sum(inertia.mass for inertia in chain.model.inertias) > 0.0:
+            raise InvalidTarget(f"the links of {chain.model.name!r} have no mass, and so no centre of mass")
 
     def _values(self, at: Placed) -> Array:
         c = at.centre_of_mass

@@ -69,4 +69,5 @@ def _ranges(chain: Chain) -> tuple[NDArray[np.int64], Array, Array]:
     """Columns (m,) of the coordinates with two limits and a range between them; its middle and half of it (m,)."""
     lower, upper = chain.limits.lower, chain.limits.upper
     columns = np.flatnonzero(np.isfinite(lower) & np.isfinite(upper) & (upper > lower))
-    return columns, 0.5 * (lower + upper)[columns], 0.5 * (upper - lower)[columns]
+    lower, upper = lower[columns], upper[columns]
+    return columns, 0.5 * (lower + upper), 0.5 * (upper - lower)
