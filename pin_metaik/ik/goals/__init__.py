@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from pin_metaik.ik.goals.bounded import Bounded
 from pin_metaik.ik.goals.centre_of_mass import CentreOfMass
 from pin_metaik.ik.goals.custom import Custom
 from pin_metaik.ik.goals.distance import Distance
@@ -41,7 +40,6 @@ GOALS: dict[str, Callable[..., Any]] = {
 
 __all__ = [
     "GOALS",
-    "Bounded",
     "CentreOfMass",
     "Custom",
     "Distance",

@@ -8,7 +8,7 @@ from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 from typing import ClassVar
 
-from pin_metaik.arguments import instance, number, shown
+from pin_metaik.arguments import checked, instance, number, shown
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.ik.goals.placed import Placed, check_moved
@@ -96,6 +96,7 @@ class OfFrame(Bounded):
     _: KW_ONLY
     reference: str | None = None
 
+    @checked
     def check(self, chain: Chain) -> None:
         """Whether the goal makes sense for a chain.
 

@@ -8,7 +8,7 @@ from dataclasses import KW_ONLY, dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pin_metaik.arguments import array, checked_as
+from pin_metaik.arguments import array, checked, checked_as
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.ik.goals.bounded import Bounded
@@ -55,6 +55,7 @@ class CentreOfMass(Bounded):
             object.__setattr__(self, "polygon", polygon.copy())
         object.__setattr__(self, "_edges", edges)
 
+    @checked
     def check(self, chain: Chain) -> None:
         """Whether the goal makes sense for a chain.
 

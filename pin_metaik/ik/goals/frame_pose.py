@@ -8,7 +8,7 @@ from dataclasses import KW_ONLY, dataclass, field
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from pin_metaik.arguments import checked_as, instance
+from pin_metaik.arguments import checked, checked_as, instance
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.ik.goals.placed import Placed, check_moved
@@ -61,6 +61,7 @@ class FramePose:
         pose = Target.at(xyz).pose
         return FramePose(frame, pose, reference=reference, position_tolerance=tolerance, orientation_tolerance=math.inf)
 
+    @checked
     def check(self, chain: Chain) -> None:
         """Whether the goal makes sense for a chain.
 

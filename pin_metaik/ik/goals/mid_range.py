@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.arguments import checked_as, shown
+from pin_metaik.arguments import checked, checked_as, shown
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.ik.goals.bounded import Bounded
@@ -41,6 +41,7 @@ class MidRange(Bounded):
         if not 0.0 <= self.share <= 1.0:
             raise InvalidTarget(f"share is from 0 to 1, got {shown(self.share)}")
 
+    @checked
     def check(self, chain: Chain) -> None:
         """Whether the goal makes sense for a chain.
 

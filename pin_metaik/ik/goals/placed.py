@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property, lru_cache
+from typing import TypeVar
 
 import numpy as np
 import pinocchio as pin
@@ -13,10 +14,12 @@ from pin_metaik.arrays import Array
 from pin_metaik.errors import FixedFrame
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.coordinates import consecutive
-from pin_metaik.kinematics.model import frame_id
+from pin_metaik.kinematics.model import as_configuration, frame_id
 
 STEP = 1e-6  # rad or m, of the central differences that stand in for a derivative
 KEPT = 256  # frames and columns of chains that are remembered
+
+Found = TypeVar("Found")
 
 
 class Placed:
@@ -28,8 +31,13 @@ class Placed:
     """
 
     def __init__(self, chain: Chain, q: Array) -> None:
-        """Place a chain's robot at q (nq,)."""
-        self.chain, self.q = chain, q
+        """Place a chain's robot at q (nq,).
+
+        Raises:
+            InvalidConfiguration: If q is not a configuration of the chain's model.
+        """
+        instance(Chain, chain=chain)
+        self.chain, self.q = chain, as_configuration(chain.model, q)
         self._poses: dict[tuple[str, str | None], pin.SE3] = {}
         self._jacobians: dict[tuple[str, str | None], Array] = {}
 
@@ -44,15 +52,16 @@ class Placed:
         Raises:
             FrameNotFound: If the model has no such frame.
         """
-        if (frame, reference) not in self._poses:
-            if reference is None:
-                model, data, number = self.chain.model, self.chain.data, _frame_id(self.chain, frame)
-                pin.forwardKinematics(model, data, self.q)
-                pose = pin.SE3(pin.updateFramePlacement(model, data, number))
-            else:
-                pose = self.pose(reference).actInv(self.pose(frame))
-            self._poses[frame, reference] = pose
-        return self._poses[frame, reference]
+        if (known := _known(self._poses, frame, reference)) is not None:
+            return known
+        if reference is None:
+            model, data, number = self.chain.model, self.chain.data, _frame_id(self.chain, frame)
+            pin.forwardKinematics(model, data, self.q)
+            pose = pin.SE3(pin.updateFramePlacement(model, data, number))
+        else:
+            pose = self.pose(reference).actInv(self.pose(frame))
+        self._poses[frame, reference] = pose
+        return pose
 
     def jacobian(self, frame: str, reference: str | None = None) -> Array:
         """Velocity (6, n) of a frame's origin (m) and of its orientation (rad), by the coordinates of the chain.
@@ -63,15 +72,16 @@ class Placed:
         Raises:
             FrameNotFound: If the model has no such frame.
         """
-        if (frame, reference) not in self._jacobians:
-            if reference is None:
-                model, data, number = self.chain.model, self.chain.data, _frame_id(self.chain, frame)
-                whole = pin.computeFrameJacobian(model, data, self.q, number, pin.LOCAL_WORLD_ALIGNED)
-                J = whole[:, _columns(self.chain)]
-            else:
-                J = self._relative(frame, reference)
-            self._jacobians[frame, reference] = J
-        return self._jacobians[frame, reference]
+        if (known := _known(self._jacobians, frame, reference)) is not None:
+            return known
+        if reference is None:
+            model, data, number = self.chain.model, self.chain.data, _frame_id(self.chain, frame)
+            whole: Array = pin.computeFrameJacobian(model, data, self.q, number, pin.LOCAL_WORLD_ALIGNED)
+            J = whole[:, _columns(self.chain)]
+        else:
+            J = self._relative(frame, reference)
+        self._jacobians[frame, reference] = J
+        return J
 
     def _relative(self, frame: str, reference: str) -> Array:
         """The same of a frame as another one sees it: v = R'(v_f - v_r - w_r x (p_f - p_r)), w = R'(w_f - w_r)."""
@@ -102,9 +112,18 @@ class Placed:
         return Placed(self.chain, self.chain.q(self.x + h, self.q))
 
 
+def _known(found: dict[tuple[str, str | None], Found], frame: str, reference: str | None) -> Found | None:
+    """What was found for two frames before; None: nothing yet, for names that were looked at."""
+    try:
+        return found[frame, reference]
+    except (KeyError, TypeError):
+        instance(str, frame=frame)
+        instance((str, type(None)), reference=reference)
+        return None
+
+
 def check_moved(chain: Chain, frame: str, reference: str | None = None) -> None:
     """Raise FixedFrame unless the chain moves a frame, in the world or relative to another frame; see ``Chain``."""
-    instance(Chain, chain=chain)
     ways = _movers(chain, frame)
     if not ways:
         raise FixedFrame(f"no joint of {chain} moves frame {frame!r}")

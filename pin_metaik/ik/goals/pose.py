@@ -184,7 +184,8 @@ class Target:
 
     def _placement(self, at: Placed) -> pin.SE3:
         """World pose of its frame, or of the chain's first one if it names none."""
-        return at.pose(self._frame(at))
+        frame = self._frame(at)
+        return at.pose(frame)
 
     def _frame(self, at: Placed) -> str:
         instance(Placed, at=at)

@@ -11,7 +11,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pin_metaik.arguments import array, checked_as
+from pin_metaik.arguments import array, checked, checked_as
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidTarget, UnknownName
 from pin_metaik.ik.goals.bounded import Bounded
@@ -49,6 +49,7 @@ class Posture(Bounded):
         else:
             object.__setattr__(self, "joints", array("a posture", self.joints, "nq", error=InvalidTarget).copy())
 
+    @checked
     def check(self, chain: Chain) -> None:
         """Whether the goal makes sense for a chain.
 
