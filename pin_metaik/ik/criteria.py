@@ -179,7 +179,7 @@ def _towards_wishes(problem: IKProblem, x: Array) -> Step:
 
 
 def _freely(problem: IKProblem, x: Array, step: Step) -> Array:
-    """A step (n,) in the null space of the goals, by no joint that is at a limit and would cross it."""
+    """A step (n,) in the null space of the goals, by no joint that is near a limit and would come nearer."""
     J, limits = problem.linearize(x)[1].T, problem.limits
     free = np.ones(len(x), dtype=bool)
     while True:
@@ -190,7 +190,8 @@ def _freely(problem: IKProblem, x: Array, step: Step) -> Array:
             N = np.zeros((len(x), basis.shape[1]))
             N[free] = basis
         way = step(N)
-        crosses = ((x <= limits.lower) & (way < -FLAT)) | ((x >= limits.upper) & (way > FLAT))
+        falls, rises = x <= limits.lower + LAST_STEP, x >= limits.upper - LAST_STEP
+        crosses = (falls & (way < -FLAT)) | (rises & (way > FLAT))
         if not crosses.any():
             return way
         free &= ~crosses
