@@ -293,12 +293,12 @@ def _whole(tolerance: Tolerance) -> tuple[tuple[float, float, float], float]:
 
 
 def _as_set(tolerance: Tolerance) -> Grown:
-    """The vectors (3,) within a tolerance, or a little less: see ``_whole``."""
+    """The vectors (3,) within a tolerance, or a little less: see ``_whole``; of a tight radius, its middle."""
     (x, y, z), _ = _whole(tolerance)
     if tolerance == FREE or isinstance(tolerance, tuple):
         most = np.array([x, y, z])
         return Grown(-most, most)
-    return Grown(0.0, 0.0, -x)
+    return Grown(0.0, 0.0, -x if tolerance > DEFAULT_TOLERANCE else 0.0)
 
 
 def _weight(name: str, weight: float) -> float:
