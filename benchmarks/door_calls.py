@@ -16,7 +16,19 @@ import numpy as np
 import pinocchio as pin
 
 import pin_metaik as mik
-from pin_metaik import collision, compare, kinematics, learn, mobile, optimize, reachable, robots, stewart, timing
+from pin_metaik import (
+    collision,
+    compare,
+    goals,
+    kinematics,
+    learn,
+    mobile,
+    optimize,
+    reachable,
+    robots,
+    stewart,
+    timing,
+)
 from pin_metaik import planning as ompl
 from pin_metaik.ik import refine
 from pin_metaik.mobile.motion.trajectory import Phase
@@ -34,6 +46,7 @@ MODULES = {
     "kinematics": kinematics,
     "stewart": stewart,
     "mobile": mobile,
+    "goals": goals,
     "compare": compare,
     "timing": timing,
     "reachable": reachable,
@@ -78,8 +91,18 @@ def problem() -> mik.IKProblem:
 
 
 @cache
-def placed() -> mik.goals.Placed:
-    return mik.goals.Placed(chain(), chain().reference)
+def placed() -> goals.Placed:
+    return goals.Placed(chain(), chain().reference)
+
+
+def near(**more: Any) -> dict[str, Any]:
+    """What all goals take that are about a number within bounds."""
+    return {"tolerance": 1e-3, "weight": 2.0, **more}
+
+
+def seen(**more: Any) -> dict[str, Any]:
+    """What all of those take that are about a frame."""
+    return near(frame="tool0", reference="shoulder_link", **more)
 
 
 @cache
@@ -403,6 +426,11 @@ OWNERS: dict[str, Callable[[], Any]] = {
     "mik.Limits": lambda: chain().limits,
     "mik.Search": lambda: optimize.Search(optimize.Box([0.0], [1.0]), rng(), np.empty((0, 1)), FEW),
     "mik.Target": lambda: mik.Target(POSE),
+    "goals.CentreOfMass": lambda: goals.CentreOfMass(least=0.0),
+    "goals.FramePose": lambda: goals.FramePose("tool0", POSE),
+    "goals.MidRange": lambda: goals.MidRange(0.5),
+    "goals.Placed": placed,
+    "goals.Posture": lambda: goals.Posture({"elbow_joint": 0.0}),
     "collision.Box": lambda: collision.Box((1.0, 1.0, 1.0)),
     "collision.Capsule": lambda: collision.Capsule(0.1, 1.0),
     "collision.Cone": lambda: collision.Cone(0.1, 1.0),
@@ -571,6 +599,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.IKProblem.near": lambda: {"count": 3},
     "mik.IKProblem.costs": lambda: {"X": np.array([X6])},
     "mik.IKProblem.verdict": lambda: {"q": np.array(X6)},
+    "mik.IKProblem.outcomes": lambda: {"q": np.array(X6)},
     "mik.IKProblem.accepts": lambda: {"q": np.array(X6)},
     "mik.IKResult.verify": dict,
     "compare.Outcome.as_dict": dict,
@@ -680,6 +709,46 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.Target.of": lambda: {"target": POSE},
     "mik.Target.residual": lambda: {"at": placed()},
     "mik.Target.met": lambda: {"at": placed()},
+    "mik.Target.jacobian": lambda: {"at": placed()},
+    "mik.Target.off": lambda: {"at": placed()},
+    "goals.CentreOfMass": lambda: near(polygon=SQUARE, margin=0.1, least=0.0, most=2.0),
+    "goals.CentreOfMass.check": lambda: {"chain": chain()},
+    "goals.Custom": lambda: near(function=np.sum, derivative=np.sum, least=0.0, most=1.0),
+    "goals.Distance": lambda: seen(point=(0.3, 0.3, 0.4), least=0.1, most=0.2),
+    "goals.FramePose": lambda: {
+        "frame": "tool0",
+        "pose": POSE,
+        "reference": "shoulder_link",
+        "position_tolerance": 1e-5,
+        "orientation_tolerance": (1e-3, 1e-3, 1e-3),
+        "position_weight": 1.0,
+        "orientation_weight": 1.0,
+    },
+    "goals.FramePose.at": lambda: {
+        "frame": "tool0",
+        "xyz": (0.3, 0.3, 0.4),
+        "reference": "shoulder_link",
+        "tolerance": 1e-5,
+    },
+    "goals.FramePose.check": lambda: {"chain": chain()},
+    "goals.FramePose.residual": lambda: {"at": placed()},
+    "goals.FramePose.jacobian": lambda: {"at": placed()},
+    "goals.FramePose.met": lambda: {"at": placed()},
+    "goals.FramePose.off": lambda: {"at": placed()},
+    "goals.InBox": lambda: seen(lower=(0.0, 0.0, 0.0), upper=(1.0, 1.0, 1.0), pose=POSE),
+    "goals.LookAt": lambda: seen(point=(0.3, 0.3, 0.4), axis="z"),
+    "goals.Manipulability": lambda: seen(least=0.1, of="pose"),
+    "goals.MidRange": lambda: near(share=0.5),
+    "goals.MidRange.check": lambda: {"chain": chain()},
+    "goals.OnLine": lambda: seen(point=(0.3, 0.3, 0.4), direction=(1.0, 0.0, 0.0), least=0.0, most=1.0),
+    "goals.OnPlane": lambda: seen(point=(0.3, 0.3, 0.4), normal="z", least=0.0, most=1.0),
+    "goals.Placed": lambda: {"chain": chain(), "q": np.array(X6)},
+    "goals.Placed.pose": lambda: {"frame": "tool0", "reference": "shoulder_link"},
+    "goals.Placed.jacobian": lambda: {"frame": "tool0", "reference": "shoulder_link"},
+    "goals.Pointing": lambda: seen(axis="z", direction=(0.0, 0.0, -1.0)),
+    "goals.Posture": lambda: near(joints={"elbow_joint": 0.5}),
+    "goals.Posture.check": lambda: {"chain": chain()},
+    "goals.Wish": lambda: {"goal": goals.MidRange(0.5), "weight": 2.0},
     "mik.Target.judge": lambda: {"placement": POSE},
     "mik.load_robot": lambda: {
         "name": "rv7fl",

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import TypeAlias
 
 import numpy as np
 
 from pin_metaik.arguments import shown
 from pin_metaik.arrays import Array
-from pin_metaik.dexterity import manipulability
+from pin_metaik.dexterity import RANK_TOLERANCE, manipulability
 from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.ik.goals.placed import Placed
 from pin_metaik.ik.gravity import gravity_torque
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.descent import Descent
@@ -21,10 +23,16 @@ Criterion: TypeAlias = Callable[[Array], float]
 Measure: TypeAlias = Callable[[IKProblem, Array, Array], Array]
 """Numbers (k,) for coordinates X (k, n) and a start x0 (n,); the lower, the better."""
 
+Step: TypeAlias = Callable[[Array], Array]
+"""A step (n,) that is a combination of the columns of N (n, k)."""
+
 STEPS = 30
 FIRST_STEP, LAST_STEP = 0.3, 1e-3  # rad or m
 NUDGE = 1e-5  # rad or m, of the finite differences
 BACK = 50  # evaluations to come back onto the targets after a step
+LITTLE = 1e-6  # of the measure: a step that gains less is the last one
+FLAT = 1e-9  # rad or m: nothing moves
+SINGULAR = 1e-4  # of the largest singular value: a direction that wishes do not depend on
 
 
 def displacement(problem: IKProblem, X: Array, x0: Array) -> Array:
@@ -99,32 +107,99 @@ def _number(value: object) -> float:
     return number
 
 
+def wished(problem: IKProblem, X: Array, x0: Array) -> Array:
+    """What is missing (k,) of the problem's wishes at X (k, n): half the square of their weighted residual."""
+    residuals = [problem.wishes.residual(Placed(problem.chain, q)) for q in problem.chain.q(X)]
+    missing: Array = 0.5 * np.square(residuals).sum(axis=1)
+    return missing
+
+
+def turned(problem: IKProblem, x: Array, x0: Array, measure: Measure) -> Array:
+    """Coordinates (n,) with each winding angle moved by whole turns to where the measure is least, the goals being met.
+
+    A pose does not depend on whole turns of a joint; postures and distances from limits do.
+    """
+    limits, best = problem.limits, float(measure(problem, x[None], x0)[0])
+    for c in np.flatnonzero(limits.winds & ~limits.periodic):
+        for turn in (2.0 * np.pi, -2.0 * np.pi):
+            while limits.lower[c] <= x[c] + turn <= limits.upper[c]:
+                tried = x.copy()
+                tried[c] += turn
+                value = float(measure(problem, tried[None], x0)[0])
+                if value >= best or not problem.goals.met(Placed(problem.chain, problem.chain.q(tried))):
+                    break
+                x, best = tried, value
+    return x
+
+
 def slide(problem: IKProblem, x: Array, x0: Array, measure: Measure, descent: Descent) -> Array:
     """Better coordinates (n,) by the measure, reached from a solution x (n,) without leaving the targets.
 
-    Steepest descent of the measure projected on the null space of the Jacobian, each step put back onto the targets by
-    the refiner (Rosen's gradient projection, 1961). Returns x itself where the targets leave no freedom.
+    Steps in the null space of the Jacobian, over the joints that their limits leave free, each put back onto the
+    targets by the refiner (Rosen's gradient projection, 1961): of steepest descent, or those of Gauss and Newton for
+    wishes. Returns x itself where the targets leave no freedom.
     """
-    J = problem.linearize(x)[1].T
-    if J.shape[1] <= J.shape[0]:
-        return x
     best = float(measure(problem, x[None], x0)[0])
     length = FIRST_STEP
+    step = _towards_wishes if measure is wished else partial(_steepest, measure, x0)
     for _ in range(STEPS):
-        gradient = (measure(problem, x + NUDGE * np.eye(len(x)), x0) - best) / NUDGE
-        J = problem.linearize(x)[1].T
-        downhill = -gradient + np.linalg.pinv(J) @ (J @ gradient)
-        size = float(np.linalg.norm(downhill))
-        if not 1e-9 <= size < math.inf:
+        way = _freely(problem, x, step(problem, x))
+        size = float(np.linalg.norm(way))
+        if not FLAT <= size < math.inf:
             return x
-        while length > LAST_STEP:
-            tried = problem.limits.clip(x + length / size * downhill)
-            refined = descent.refine(problem, tried[None], BACK)
+        length = min(length, size)
+        while True:
+            refined = descent.refine(problem, problem.limits.clip(x + length / size * way)[None], BACK)
             value = float(measure(problem, refined.x[None], x0)[0])
             if refined.met and value < best:
-                x, best = refined.x, value
                 break
             length *= 0.5
-        else:
+            if length <= LAST_STEP:
+                return x
+        gained, x, best = best - value, refined.x, value
+        if gained <= LITTLE * best:
             return x
     return x
+
+
+def _steepest(measure: Measure, x0: Array, problem: IKProblem, x: Array) -> Step:
+    """Steps of steepest descent of a measure, as long as the first one may be."""
+    best = float(measure(problem, x[None], x0)[0])
+    gradient = (measure(problem, x + NUDGE * np.eye(len(x)), x0) - best) / NUDGE
+
+    def step(N: Array) -> Array:
+        downhill = -N @ (N.T @ gradient)
+        size = float(np.linalg.norm(downhill))
+        return downhill * (FIRST_STEP / size if size >= FLAT else 0.0)
+
+    return step
+
+
+def _towards_wishes(problem: IKProblem, x: Array) -> Step:
+    """Steps of Gauss and Newton for the residual of the problem's wishes."""
+    at = Placed(problem.chain, problem.chain.q(x))
+    r, J = problem.wishes.residual(at), problem.wishes.jacobian(at)
+
+    def step(N: Array) -> Array:
+        return -N @ (np.linalg.pinv(J @ N, rcond=SINGULAR) @ r)
+
+    return step
+
+
+def _freely(problem: IKProblem, x: Array, step: Step) -> Array:
+    """A step (n,) in the null space of the goals, by no joint that is near a limit and would come nearer."""
+    J, limits = problem.linearize(x)[1].T, problem.limits
+    free = np.ones(len(x), dtype=bool)
+    while True:
+        N = np.zeros((len(x), 0))
+        if free.any():
+            _, sigma, Vt = np.linalg.svd(J[:, free])
+            basis = Vt[int((sigma > RANK_TOLERANCE * sigma.max(initial=0.0)).sum()) :].T
+            N = np.zeros((len(x), basis.shape[1]))
+            N[free] = basis
+        way = step(N)
+        falls, rises = x <= limits.lower + LAST_STEP, x >= limits.upper - LAST_STEP
+        crosses = (falls & (way < -FLAT)) | (rises & (way > FLAT))
+        if not crosses.any():
+            return way
+        free &= ~crosses

@@ -15,8 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import array, checked, instance
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSetting, InvalidTarget
-from pin_metaik.ik.goals.goal import Goal, Goals, Placed
+from pin_metaik.ik.goals.goal import Goal, Goals, Outcome
+from pin_metaik.ik.goals.placed import Placed
 from pin_metaik.ik.goals.pose import ANYWHERE, Target, TargetLike
+from pin_metaik.ik.goals.wish import Wish, Wishes
 from pin_metaik.ik.proof import Proof
 from pin_metaik.kinematics import Chain, Limits
 from pin_metaik.kinematics.kernel.layout import ALIGNED, NEAR, SLACK, TURN_WEIGHT, WEIGHT
@@ -25,8 +27,8 @@ from pin_metaik.kinematics.proofs.closed_forms import Branches
 from pin_metaik.optimize import Box
 from pin_metaik.optimize.settings import few
 
-Asked: TypeAlias = TargetLike | Goal | Sequence[TargetLike | Goal]
-NO_GOALS = Goals()
+Asked: TypeAlias = TargetLike | Goal | Wish | Sequence[TargetLike | Goal | Wish]
+NO_GOALS, NO_WISHES = Goals(), Wishes()
 
 
 class Verdict(NamedTuple):
@@ -61,6 +63,7 @@ class IKProblem:
         rows: (m, 2) the (frame, axis) pairs that count: three translations, three rotations, less the free ones.
         world: What must not collide; ``None``: nothing is checked.
         goals: All other goals.
+        wishes: What is improved in the freedom that they leave.
     """
 
     chain: Chain
@@ -69,6 +72,7 @@ class IKProblem:
     rows: NDArray[np.int64]
     world: CollisionWorld | None = None
     goals: Goals = NO_GOALS
+    wishes: Wishes = NO_WISHES
 
     @staticmethod
     def of(chain: Chain, target: Asked, world: CollisionWorld | None = None) -> IKProblem:
@@ -77,7 +81,7 @@ class IKProblem:
         Args:
             chain: The chain.
             target: A target for its only frame, or a list with one for each frame: in the chain's order, or each
-                naming its frame; a further target of a frame, and goals of other kinds, may be in the list, too.
+                naming its frame; a further target of a frame, goals of other kinds, and wishes may be in the list, too.
             world: What must not collide.
 
         Raises:
@@ -85,9 +89,10 @@ class IKProblem:
                 not (m,) finite numbers.
             FrameNotFound: If a target names a frame that is not the chain's.
             InvalidSetting: If the world's model is not the chain's.
+            FixedFrame: If a goal is about a frame that the chain does not move.
         """
         check_world(chain, world)
-        given, goals, listed = _sorted_out(target)
+        given, goals, wishes, listed = _sorted_out(target)
         several = len(chain.frames) > 1 or listed
         if not several:
             targets: tuple[Target, ...] = (Target.of(cast(TargetLike, given)),)
@@ -96,16 +101,18 @@ class IKProblem:
         else:
             targets = tuple(Target.of(one) for one in given)
         if several or targets[0].frame is not None:
-            targets, further = _match(chain.frames, targets, bool(goals))
+            targets, further = _match(chain.frames, targets, bool(goals or wishes))
             goals = further + goals
         records = targets[0].record[None] if len(targets) == 1 else np.array([one.record for one in targets])
         rows = _rows(tuple([one.counts for one in targets]))
-        return IKProblem(chain, targets, records, rows, world, Goals.of(chain, goals) if goals else NO_GOALS)
+        asked = Goals.of(chain, goals) if goals else NO_GOALS
+        wished = Wishes.of(chain, wishes) if wishes else NO_WISHES
+        return IKProblem(chain, targets, records, rows, world, asked, wished)
 
     @property
-    def asked(self) -> tuple[Goal, ...]:
+    def asked(self) -> tuple[Goal | Wish, ...]:
         """Everything that is asked: what makes the same problem again."""
-        return tuple(one for one in self.targets if one is not ANYWHERE) + self.goals.each
+        return tuple(one for one in self.targets if one is not ANYWHERE) + self.goals.each + self.wishes.each
 
     @property
     def m(self) -> int:
@@ -301,6 +308,14 @@ class IKProblem:
         collides = accepted and self.world is not None and self.world.checker.collides(q)
         return Verdict(position, orientation, accepted and not collides, collides)
 
+    def outcomes(self, q: NDArray[np.float64]) -> tuple[tuple[Outcome, ...], tuple[Outcome, ...]]:
+        """What came of the goals that count, and of the wishes, at a configuration q (nq,)."""
+        q = array("q", q, self.chain.model.nq, error=InvalidConfiguration)
+        at, pairs = Placed(self.chain, q), zip(self.chain.frames, self.targets, strict=True)
+        placed = [replace(target, frame=frame) for frame, target in pairs if target is not ANYWHERE]
+        musts = tuple(Outcome.of(goal, at) for goal in (*placed, *self.goals.each))
+        return musts, tuple(Outcome.of(wish.goal, at) for wish in self.wishes.each)
+
     def accepts(self, q: NDArray[np.float64]) -> bool:
         """Whether q (nq,) is a solution."""
         return self.verdict(q).accepted
@@ -321,15 +336,17 @@ def _rows(counts: tuple[tuple[bool, ...], ...]) -> NDArray[np.int64]:
     return np.ascontiguousarray(np.argwhere(np.array(counts)))
 
 
-def _sorted_out(asked: Asked) -> tuple[object, tuple[Goal, ...], bool]:
-    """The targets that somebody asks for, the goals of other kinds, and whether the targets are a list of them."""
-    if isinstance(asked, Goal) and not isinstance(asked, Target):
-        return [], (asked,), True
-    kinds = Target, pin.SE3, Goal
+def _sorted_out(asked: Asked) -> tuple[object, tuple[Goal, ...], tuple[Wish, ...], bool]:
+    """The targets that somebody asks for, goals of other kinds, wishes, and whether the targets are a list of them."""
+    if isinstance(asked, Wish) or (isinstance(asked, Goal) and not isinstance(asked, Target)):
+        asked = [asked]
+    kinds = Target, pin.SE3, Goal, Wish
     if not isinstance(asked, (list, tuple)) or not any(isinstance(one, kinds) for one in asked):
-        return asked, (), False
+        return asked, (), (), False
+    wishes = tuple(one for one in asked if isinstance(one, Wish))
     others = tuple(one for one in asked if isinstance(one, Goal) and not isinstance(one, Target))
-    return [one for one in asked if isinstance(one, Target) or not isinstance(one, Goal)], others, True
+    targets = [one for one in asked if isinstance(one, Target) or not isinstance(one, (Goal, Wish))]
+    return targets, others, wishes, True
 
 
 def _match(

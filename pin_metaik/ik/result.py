@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.dexterity import rank
+from pin_metaik.ik.goals.goal import Outcome
 from pin_metaik.ik.problem import Asked, IKProblem
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.reasons import cannot_move, collisions, in_collision, out_of_reach
@@ -115,6 +116,16 @@ class IKResult:
         return rank(self.problem.linearize(self.x)[1])
 
     @property
+    def goals(self) -> tuple[Outcome, ...]:
+        """What came of each goal: whether it is met at ``q``, and how far that is from it."""
+        return self.problem.outcomes(self.q)[0]
+
+    @property
+    def wishes(self) -> tuple[Outcome, ...]:
+        """What came of each wish."""
+        return self.problem.outcomes(self.q)[1]
+
+    @property
     def why(self) -> str:
         """The reason for the status, in words."""
         match self.status:
@@ -135,6 +146,8 @@ class IKResult:
         """How far ``q`` is from the target, and what keeps it from it."""
         still, free = cannot_move(self.problem), [n for n in self.binding if n not in self.chain.limits.stuck]
         stuck = (f"; at a limit: {', '.join(free)}" if free else "") + (f"; {still}" if still else "")
+        if self.problem.goals:
+            return f"the nearest misses {'; '.join(str(one) for one in self.goals if not one.met)}{stuck}"
         asked = self.problem.m
         lost = f"; {asked - self.rank} of {asked} directions lost there" if self.rank < asked else ""
         away = f"{self.position_error:.3g} m and {self.orientation_error:.3g} rad away"
@@ -164,6 +177,8 @@ class IKResult:
             "frames": list(self.chain.frames),
             **fields_of(self, *names),
             "joints": dict(zip(self.chain.names, self.x.tolist(), strict=True)),
+            "goals": [one.as_dict() for one in self.goals],
+            "wishes": [one.as_dict() for one in self.wishes],
             "collisions": plain(self.contacts),
         }
 

@@ -17,7 +17,7 @@ from pin_metaik.arguments import checked, instance
 from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.clearance import keep_clear
 from pin_metaik.ik.collect import collect
-from pin_metaik.ik.criteria import Criterion, Measure, measure_of, slide
+from pin_metaik.ik.criteria import Criterion, Measure, measure_of, slide, turned, wished
 from pin_metaik.ik.exclude import FAR, FIRST, LONG, Exclusion
 from pin_metaik.ik.goals.pose import DEFAULT_TOLERANCE
 from pin_metaik.ik.plain_pose import solve_plain
@@ -118,7 +118,7 @@ class IKSolver:
         """Solve a problem, in its world if it has one: what ``solve_ik`` does, which has the arguments and errors."""
         problem, seed = problem if q0 is None else problem.at(q0), as_seed(rng)
         first = None
-        if len(problem.targets) == 1 and not problem.goals:
+        if len(problem.targets) == 1 and not problem.goals and not problem.wishes:
             first = solve_plain(problem.chain, problem.targets[0], q0, self.kernel_settings, seed)
         return self._finish(problem, first, q0, seed)
 
@@ -129,7 +129,7 @@ class IKSolver:
         if isinstance(first, IKResult):
             result = first
         else:  # a choice is made among the solutions that are clear; the first one is cleared
-            aim = problem if self._measure is not None else replace(problem, world=None)
+            aim = replace(problem, world=None) if self._measure_for(problem) is None else problem
             result = self.search(aim, q0, seed, first=first)
         if problem.world is None:
             return result
@@ -169,8 +169,9 @@ class IKSolver:
             state.add(first)
         if chain.limits.rigid:  # there is nothing to search: it stands where it stands
             state.x, state.spent = chain.limits.lower, 1
-        if self._measure is not None and not state.over():
-            self._choose(problem, self._measure, base, rng, state)
+        measure = self._measure_for(problem)
+        if measure is not None and not state.over():
+            self._choose(problem, measure, base, rng, state)
         if self._descent is not None and (self.seeder is None or self.seeder == "auto") and not state.over():
             self._restart(problem, self._descent, x0, rng, state, exclusion, tried=0 if first is None else 1)
         if self._seeder is not None and not state.over():
@@ -203,7 +204,8 @@ class IKSolver:
     ) -> None:
         """Collect distinct solutions and take the best by a measure; on a redundant chain, improve it.
 
-        In a world, colliding solutions are discarded, and so is a null-space improvement that collides.
+        Wishes are improved last. In a world, colliding solutions are discarded, and so is a null-space improvement that
+        collides.
         """
         x0 = problem.chain.x(base)
         budget = Budget(evaluations=max(1, state.left(CHOICE_SHARE)), seconds=self.budget.seconds)
@@ -223,10 +225,16 @@ class IKSolver:
             found = found[[problem.accepts(q) for q in problem.chain.q(found, base)]]
         if len(found):
             found = problem.limits.nearest_turns(found, x0)
+            if problem.wishes:
+                found = np.array([turned(problem, x, x0, wished) for x in found])
             best = found[np.argmin(measure(problem, found, x0))]
-            better = slide(problem, best, x0, measure, self.descent)
-            kept = problem.world is None or problem.accepts(problem.chain.q(better, base))
+            better = slide(problem, best, x0, wished if problem.wishes else measure, self.descent)
+            kept = problem.accepts(problem.chain.q(better, base))
             state.x, state.met = better if kept else best, True
+
+    def _measure_for(self, problem: IKProblem) -> Measure | None:
+        """What chooses among the solutions of a problem, if anything does: ``select``, or else the wishes."""
+        return wished if self._measure is None and problem.wishes else self._measure
 
     @property
     def _decides(self) -> bool:
@@ -268,7 +276,7 @@ class IKSolver:
         """Refine from x0 (n,), then from random starts; ``tried`` says that the first batch of them has been.
 
         The middle of the tolerances is tried first. Where they are loose, all further batches aim at all that is
-        accepted; where they are not, a last one does.
+        accepted; where they are not, a descent from the best of each batch does, and a last batch.
         """
         share = 1.0 - RESERVE if self._seeder is None else RESTART_SHARE
         batches = partial(start_batches, problem.chain, x0, rng, self.starts)
@@ -282,6 +290,8 @@ class IKSolver:
                         return
                 before = state.spent
                 state.add(first(aim, starts, state.left(share)))
+                if aim is problem and not state.over(share):  # the best compromise is mostly next to what is accepted
+                    state.add(descent.refine(problem.whole, state.x[None], state.left(share)))
                 if state.over(share) or state.spent == before:
                     return
                 first = descent.refine

@@ -15,7 +15,7 @@ from pin_metaik.arguments import array, checked, shown
 from pin_metaik.errors import FixedFrame, InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.kinematics.closed_form import NOMINAL, closed_form
 from pin_metaik.kinematics.frame_fk import FrameFK, PinocchioData
-from pin_metaik.kinematics.joints import Parts, leader_of, parts_of
+from pin_metaik.kinematics.joints import Parts, leader_of, parts_of, velocities
 from pin_metaik.kinematics.kernel.layout import LEAF, REACH, Entries, Floats, Ints, Packed, Samples, pack
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.model import (
@@ -47,7 +47,6 @@ from pin_metaik.robots.pickling import reduce_model
 if TYPE_CHECKING:
     from pin_metaik.kinematics.kernel.entry import Kernels
 
-NUDGE = 1e-5  # rad or m, of the differences that stand in for derivatives of quaternions
 RESTARTS = 256  # random starts of the pose solver
 REMEMBERED = 16  # sets of samples kept, and chains whose held joints are elsewhere
 REMADE = 16  # chains kept that came out of pickles
@@ -281,13 +280,10 @@ class Chain:
         """(nv, n) Pinocchio's velocity per velocity of each coordinate at x (n,), by which a Jacobian is multiplied."""
         x, model = array("x", x, self.n, error=InvalidConfiguration), self.model
         T = np.zeros((model.nv, self.n))
-        for c, joint in enumerate(self.coordinates.joints.tolist()):
+        for joint, column in self._columns.items():
             kind = model.joints[joint]
-            if kind.nv == 1:
-                T[kind.idx_v, c] = 1.0
-            else:
-                h = NUDGE * np.eye(self.n)[c]
-                T[:, c] = pin.difference(model, self.q(x - h), self.q(x + h)) / (2.0 * NUDGE)
+            own = slice(column, column + kind.nv)
+            T[kind.idx_v : kind.idx_v + kind.nv, own] = velocities(kind, x[own])
         return T
 
     def keeps_limits(self, q: NDArray[np.float64]) -> bool:

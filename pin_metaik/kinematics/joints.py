@@ -267,6 +267,40 @@ def angles(quaternions: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.stack([_wrapped(yaw), pitch, _wrapped(roll)], axis=-1)
 
 
+def velocities(kind: pin.JointModel, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(m, m) Pinocchio's velocity of a joint per velocity of each of its m coordinates, at x (m,).
+
+    The two are one for joints whose entries of a configuration are angles and lengths. Of a floating, a planar and a
+    ball joint, Pinocchio's are along the axes that the joint moves.
+    """
+    match kind.shortname().removeprefix("JointModel"):
+        case "Planar":
+            c, s = math.cos(x[2]), math.sin(x[2])
+            return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        case "Spherical":
+            return _angular(x)
+        case "FreeFlyer":
+            T = np.zeros((6, 6))
+            T[:3, :3], T[3:, 3:] = pin.rpy.rpyToMatrix(x[5], x[4], x[3]).T, _angular(x[3:])
+            return T
+        case "Composite":
+            T = np.zeros((len(x), len(x)))
+            at = 0
+            for one in kind.extract().joints:
+                part = slice(at, at + one.nv)
+                T[part, part] = velocities(one, x[part])
+                at = part.stop
+            return T
+        case _:
+            return np.eye(len(x))
+
+
+def _angular(angles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(3, 3) angular velocity, along the axes of what turns, per rate of yaw, pitch and roll."""
+    (_, cp, cr), (_, sp, sr) = np.cos(angles), np.sin(angles)
+    return np.array([[-sp, 0.0, 1.0], [cp * sr, cr, 0.0], [cp * cr, -sr, 0.0]])
+
+
 def _wrapped(angle: NDArray[np.float64]) -> NDArray[np.float64]:
     """An angle within pi, rad."""
     return angle - 2.0 * np.pi * np.round(angle / (2.0 * np.pi))

@@ -1,62 +1,28 @@
-"""What a goal is, what it reads of the robot, and several goals as one residual."""
+"""What a goal is, and several goals as one residual."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
-import pinocchio as pin
 
 from pin_metaik.arguments import shown
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidTarget
+from pin_metaik.ik.goals.placed import STEP, Placed
 from pin_metaik.kinematics import Chain
-from pin_metaik.kinematics.model import frame_id
-
-STEP = 1e-6  # rad or m, of the central differences that stand in for a derivative
-
-
-class Placed:
-    """The robot at one configuration: what a goal looks at.
-
-    Attributes:
-        chain: The chain whose coordinates are searched.
-        q: (nq,) the configuration.
-    """
-
-    def __init__(self, chain: Chain, q: Array) -> None:
-        """Place a chain's robot at q (nq,)."""
-        self.chain, self.q = chain, q
-        self._poses: dict[str, pin.SE3] = {}
-
-    @cached_property
-    def x(self) -> Array:
-        """(n,) the chain's coordinates."""
-        return self.chain.x(self.q)
-
-    def pose(self, frame: str) -> pin.SE3:
-        """World pose of a frame of the model, by Pinocchio.
-
-        Raises:
-            FrameNotFound: If the model has no such frame.
-        """
-        if frame not in self._poses:
-            model, data = self.chain.model, self.chain.data
-            number = frame_id(model, frame)
-            pin.forwardKinematics(model, data, self.q)
-            self._poses[frame] = pin.SE3(pin.updateFramePlacement(model, data, number))
-        return self._poses[frame]
 
 
 @runtime_checkable
 class Goal(Protocol):
     """A set that the robot shall be in, by a residual to descend and a test that counts.
 
-    A goal may have a method ``jacobian(at)`` that gives the derivative (m, n) of its residual by the coordinates of
-    ``at.chain``; without one, central differences stand in for it. ``Target`` is the goal that compiled loops evaluate;
-    any other takes ten to a hundred times as long, and makes Levenberg-Marquardt steps of those of ``DLS``.
+    A goal may have further methods: ``jacobian(at)``, the derivative (m, n) of its residual by the coordinates of
+    ``at.chain`` (central differences stand in for it), ``off(at)``, how far the robot is from the set, by unit, for
+    messages (the size of the residual stands in for it), and ``check(chain)``, which raises an error for a chain that
+    the goal makes no sense for. ``Target`` is the goal that compiled loops evaluate; any other takes ten to a hundred
+    times as long.
     """
 
     def residual(self, at: Placed) -> Array:
@@ -66,6 +32,41 @@ class Goal(Protocol):
     def met(self, at: Placed) -> bool:
         """Whether the robot is in the set, to within the goal's tolerance."""
         ...
+
+
+class Outcome(NamedTuple):
+    """What came of a goal.
+
+    Attributes:
+        goal: The goal.
+        met: Whether the robot is in its set, to within the tolerance.
+        off: How far the robot is from the set, by unit: ``{"m": 0.02, "rad": 0.1}``; the tolerance is not taken off.
+    """
+
+    goal: Goal
+    met: bool
+    off: dict[str, float]
+
+    @staticmethod
+    def of(goal: Goal, at: Placed) -> Outcome:
+        """Look at a goal where the robot is."""
+        own = getattr(goal, "off", None)
+        off = {"": float(np.linalg.norm(_residual(goal, at, None)))} if own is None else own(at)
+        return Outcome(goal, goal.met(at), off)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON."""
+        return {"goal": named(self.goal), "met": self.met, "off": self.off}
+
+    def __str__(self) -> str:
+        away = " and ".join(f"{size:.3g} {unit}".strip() for unit, size in self.off.items())
+        return f"{named(self.goal)} by {away}"
+
+
+def named(goal: Goal) -> str:
+    """A goal for a message: its kind, and the frame that it is about."""
+    frame = getattr(goal, "frame", None)
+    return type(goal).__name__ + (f" of {frame}" if isinstance(frame, str) else "")
 
 
 class Goals(NamedTuple):
@@ -85,7 +86,14 @@ class Goals(NamedTuple):
 
         Raises:
             InvalidTarget: If a residual is not (m,) finite numbers.
+            FrameNotFound: If a goal names a frame that the model does not have.
+            FixedFrame: If a goal is about a frame that the chain does not move.
+            UnknownName: If a goal names a joint that is not the chain's.
         """
+        for goal in goals:
+            check = getattr(goal, "check", None)
+            if check is not None:
+                check(chain)
         at = Placed(chain, chain.reference)
         return Goals(tuple(goals), tuple(len(_residual(goal, at, None)) for goal in goals))
 
@@ -121,33 +129,29 @@ class Goals(NamedTuple):
         Raises:
             InvalidTarget: If that of a goal is not (m, n) finite numbers.
         """
-        n = at.chain.n
-        steps = [(Placed(at.chain, _moved(at, h)), Placed(at.chain, _moved(at, -h))) for h in STEP * np.eye(n)]
-        J = np.empty((self.rows, n))
-        row = 0
-        for goal, m in zip(self.each, self.sizes, strict=True):
-            own = getattr(goal, "jacobian", None)
-            if own is None:
-                slopes = [
-                    (_residual(goal, there, m) - _residual(goal, back, m)) / (2.0 * STEP) for there, back in steps
-                ]
-                J[row : row + m] = np.reshape(slopes, (n, m)).T
-            else:
-                J[row : row + m] = _numbers(f"the jacobian of {goal!r}", own(at), (m, n))
-            row += m
-        return J
+        return np.concatenate([_slopes(goal, at, m) for goal, m in zip(self.each, self.sizes, strict=True)])
 
 
-def _moved(at: Placed, h: Array) -> Array:
-    return at.chain.q(at.x + h, at.q)
+def differences(goal: Goal, at: Placed, size: int) -> Array:
+    """Derivative (m, n) of a goal's residual (m,) by central differences."""
+    slopes = [_residual(goal, there, size) - _residual(goal, back, size) for there, back in at.around]
+    return np.reshape(slopes, (len(slopes), size)).T / (2.0 * STEP)
+
+
+def _slopes(goal: Goal, at: Placed, size: int) -> Array:
+    """The derivative (m, n) of a goal's residual: its own, looked at, or by differences."""
+    own = getattr(goal, "jacobian", None)
+    if own is None:
+        return differences(goal, at, size)
+    return _numbers("the jacobian", goal, own(at), (size, at.chain.n))
 
 
 def _residual(goal: Goal, at: Placed, size: int | None) -> Array:
     """The residual (m,) of a goal, of somebody's own perhaps, looked at."""
-    return _numbers(f"the residual of {goal!r}", goal.residual(at), None if size is None else (size,))
+    return _numbers("the residual", goal, goal.residual(at), None if size is None else (size,))
 
 
-def _numbers(what: str, given: object, shape: tuple[int, ...] | None) -> Array:
+def _numbers(what: str, goal: Goal, given: object, shape: tuple[int, ...] | None) -> Array:
     """What a goal gives, as an array of this shape, or (m,)."""
     try:
         numbers = np.asarray(given, dtype=float)
@@ -156,5 +160,5 @@ def _numbers(what: str, given: object, shape: tuple[int, ...] | None) -> Array:
     fits = numbers.ndim == 1 if shape is None else numbers.shape == shape
     if not fits or not np.isfinite(numbers).all():
         wanted = "(m,)" if shape is None else str(shape)
-        raise InvalidTarget(f"{what} must be {wanted} finite numbers, got {shown(given)}")
+        raise InvalidTarget(f"{what} of {shown(goal)} must be {wanted} finite numbers, got {shown(given)}")
     return numbers

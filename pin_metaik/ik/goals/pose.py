@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, instance, shown
 from pin_metaik.errors import InvalidTarget
-from pin_metaik.ik.goals.goal import Placed
+from pin_metaik.ik.goals.placed import Placed
+from pin_metaik.ik.goals.sets import Grown
 from pin_metaik.kinematics.kernel.layout import ALIGNED, NEAR, SLACK, TURN_SLACK, WEIGHT
 from pin_metaik.kinematics.pose import as_pose, as_position
 
@@ -149,17 +150,33 @@ class Target:
 
     def residual(self, at: Placed) -> NDArray[np.float64]:
         """(6,) weighted errors of position (m) and orientation (rad) beyond the tolerances, as every goal has them."""
-        error = self.pose.actInv(self._placement(at))
-        r, record = np.concatenate([error.translation, pin.log3(error.rotation)]), self.whole_record
-        for part in (SLACK, TURN_SLACK):
-            slack, rows = record[part : part + 3], slice(part - SLACK, part - SLACK + 3)
-            if slack[0] < 0.0:  # minus the radius of a ball
-                size = float(np.linalg.norm(r[rows]))
-                r[rows] *= max(size + slack[0], 0.0) / max(size, sys.float_info.min)
-            else:
-                r[rows] = np.maximum(r[rows] - slack, 0.0) + np.minimum(r[rows] + slack, 0.0)
-        weighted: NDArray[np.float64] = record[WEIGHT:NEAR] * r
+        return self._beyond(self._placement(at))
+
+    def jacobian(self, at: Placed) -> NDArray[np.float64]:
+        """(6, n) derivative of the residual by the coordinates of the chain."""
+        return self._slopes(self._placement(at), at.jacobian(self._frame(at)))
+
+    def _beyond(self, placement: pin.SE3) -> NDArray[np.float64]:
+        """The residual (6,) for a placement of the frame."""
+        error, (near, aligned) = self.pose.actInv(placement), self._sets
+        parts = near.residual(error.translation), aligned.residual(pin.log3(error.rotation))
+        return self.record[WEIGHT:NEAR] * np.concatenate(parts)
+
+    def _slopes(self, placement: pin.SE3, J: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The derivative (6, n) of the residual, from the velocity (6, n) of the frame along the world's axes."""
+        error, (near, aligned) = self.pose.actInv(placement), self._sets
+        turn = pin.Jlog3(error.rotation) @ placement.rotation.T
+        parts = (
+            near.slopes(error.translation, self.pose.rotation.T @ J[:3]),
+            aligned.slopes(pin.log3(error.rotation), turn @ J[3:]),
+        )
+        weighted: NDArray[np.float64] = self.record[WEIGHT:NEAR, None] * np.concatenate(parts)
         return weighted
+
+    @cached_property
+    def _sets(self) -> tuple[Grown, Grown]:
+        """The sets of positions (m) and rotation vectors (rad) that are accepted, in the target frame."""
+        return _as_set(self.position_tolerance), _as_set(self.orientation_tolerance)
 
     def met(self, at: Placed) -> bool:
         """Whether its frame is within the tolerances, by Pinocchio."""
@@ -167,8 +184,22 @@ class Target:
 
     def _placement(self, at: Placed) -> pin.SE3:
         """World pose of its frame, or of the chain's first one if it names none."""
+        frame = self._frame(at)
+        return at.pose(frame)
+
+    def _frame(self, at: Placed) -> str:
         instance(Placed, at=at)
-        return at.pose(at.chain.frames[0] if self.frame is None else self.frame)
+        return at.chain.frames[0] if self.frame is None else self.frame
+
+    def off(self, at: Placed) -> dict[str, float]:
+        """Distance (m) and angle (rad) from the pose, over the axes that count."""
+        return self._off(self._placement(at))
+
+    def _off(self, placement: pin.SE3) -> dict[str, float]:
+        judged = self.judge(placement)
+        sizes = {"m": judged.position_error, "rad": judged.orientation_error}
+        counted = {"m": any(self.counts[:3]), "rad": any(self.counts[3:])}
+        return {unit: size for unit, size in sizes.items() if counted[unit]}
 
     def judge(self, placement: pin.SE3) -> Judgement:
         """How far a world placement is from this target, and whether that is close enough; by Pinocchio."""
@@ -259,6 +290,15 @@ def _whole(tolerance: Tolerance) -> tuple[tuple[float, float, float], float]:
     if isinstance(tolerance, tuple):
         return (WHOLE * tolerance[0], WHOLE * tolerance[1], WHOLE * tolerance[2]), EDGE * min(tolerance)
     return ((FREE,) * 3, FREE) if tolerance == FREE else ((-WHOLE * tolerance,) * 3, EDGE * tolerance)
+
+
+def _as_set(tolerance: Tolerance) -> Grown:
+    """The vectors (3,) within a tolerance, or a little less: see ``_whole``; of a tight radius, its middle."""
+    (x, y, z), _ = _whole(tolerance)
+    if tolerance == FREE or isinstance(tolerance, tuple):
+        most = np.array([x, y, z])
+        return Grown(-most, most)
+    return Grown(0.0, 0.0, -x if tolerance > DEFAULT_TOLERANCE else 0.0)
 
 
 def _weight(name: str, weight: float) -> float:

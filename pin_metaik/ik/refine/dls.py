@@ -11,8 +11,12 @@ from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.descent import CompiledDescent, Stepwise
-from pin_metaik.ik.refine.lm import LM
+from pin_metaik.ik.refine.iterate import Patience, iterate
 from pin_metaik.ik.refine.protocol import Refinement, given_starts
+from pin_metaik.kinematics.kernel.limited_step import limited_step
+
+CURVED = 10.0  # the damping of goals in Python by that of poses: of 5, 10 and 20 the one with the fewest evaluations
+FLOOR = 1e-9  # of the damping
 
 
 @checked
@@ -23,7 +27,7 @@ class DLS:
     Each step is dx = -J' (J J' + lambda I)^-1 e over the joints that are not at a limit and pushed outward, with
     lambda = damping |e|^2 + 1e-9. Joints that would cross a limit go onto it and the step is solved again for the
     others. A start is given up when four steps do not take the error below 70 % of what it was. Goals that only Python
-    evaluates are descended to by Levenberg-Marquardt (``LM``) instead.
+    evaluates are descended to by the same steps in NumPy, with ten times the damping: their residuals are more curved.
 
     Attributes:
         damping: What the squared error is multiplied with, 1/m^2 or 1/rad^2.
@@ -42,7 +46,7 @@ class DLS:
 
     def descent(self) -> CompiledDescent:
         """Its compiled loops, as a global search takes them."""
-        return CompiledDescent(self.damping, self.iterations, Stepwise(LM()))
+        return CompiledDescent(self.damping, self.iterations, Stepwise(InNumPy(CURVED * self.damping, self.iterations)))
 
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent."""
@@ -58,3 +62,27 @@ class DLS:
     def settle(self, problem: IKProblem, x: NDArray[np.float64], evaluations: int) -> Refinement:
         """Go on from x (n,) in small steps as long as it gets nearer at all: for targets that cannot be met."""
         return self.descent().settle(problem, given_starts(problem, [x], evaluations)[0], evaluations)
+
+
+@dataclass(frozen=True)
+class InNumPy:
+    """The steps of ``DLS`` in NumPy, for goals that only Python evaluates.
+
+    Attributes:
+        damping: As that of ``DLS``.
+        iterations: Steps from one start at most.
+    """
+
+    damping: float
+    iterations: int
+
+    def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
+        """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent."""
+        lower, upper = problem.limits.lower, problem.limits.upper
+
+        def step(
+            x: NDArray[np.float64], r: NDArray[np.float64], J: NDArray[np.float64], square: float
+        ) -> NDArray[np.float64]:
+            return limited_step(x, r, J, lower, upper, self.damping * square + FLOOR) - x
+
+        return iterate(problem, starts, evaluations, step, Patience(iterations=self.iterations))

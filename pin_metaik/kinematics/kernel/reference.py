@@ -13,6 +13,7 @@ import pinocchio as pin
 
 from pin_metaik.kinematics.kernel.descent import DAMPING_FLOOR, EXACT, PATIENCE, POLISH
 from pin_metaik.kinematics.kernel.layout import Floats
+from pin_metaik.kinematics.kernel.limited_step import limited_step
 
 
 @dataclass(frozen=True)
@@ -56,21 +57,6 @@ def residual(problem: Problem, x: Floats) -> tuple[Floats, Floats]:
     return np.concatenate([error.translation, pin.log3(error.rotation)]), np.vstack([to_goal @ J[:3], to_goal @ J[3:]])
 
 
-def step(problem: Problem, x: Floats, r: Floats, J: Floats, damping: float) -> Floats:
-    """The next x (n,): damped least squares over the joints that their limits leave free."""
-    lower, upper, H = problem.lower, problem.upper, damping * np.eye(6)
-    slope = J.T @ r
-    held = ((x <= lower) & (slope > 0.0)) | ((x >= upper) & (slope < 0.0))  # at a limit and pushed outward
-    J = np.where(held, 0.0, J)
-    dx = -J.T @ np.linalg.solve(J @ J.T + H, r)
-    crossing = ~held & ((x + dx < lower) | (x + dx > upper))
-    if crossing.any():  # those go onto their limits, and the others make up for it
-        onto = np.where(crossing, np.clip(x + dx, lower, upper) - x, 0.0)
-        free = np.where(crossing, 0.0, J)
-        dx = onto - free.T @ np.linalg.solve(free @ free.T + H, r + J @ onto)
-    return np.clip(x + dx, lower, upper)
-
-
 def descend(
     problem: Problem, start: Floats, evaluations: int, damping: float, progress: float
 ) -> tuple[Floats, int, bool]:
@@ -99,7 +85,7 @@ def descend(
             if square > progress * mark:
                 return best, i + 1, False
             mark = square
-        x = step(problem, x, r, J, damping * square + DAMPING_FLOOR)
+        x = limited_step(x, r, J, problem.lower, problem.upper, damping * square + DAMPING_FLOOR)
     return best, evaluations, found
 
 

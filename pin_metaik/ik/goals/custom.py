@@ -1,0 +1,67 @@
+"""A goal of your own: a function of the configuration."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import KW_ONLY, dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pin_metaik.arguments import array, checked_as
+from pin_metaik.arrays import Array
+from pin_metaik.errors import InvalidTarget
+from pin_metaik.ik.goals.bounded import Bounded
+from pin_metaik.ik.goals.placed import STEP, Placed
+from pin_metaik.ik.goals.vectors import check_range
+
+
+@checked_as(InvalidTarget)
+@dataclass(frozen=True, eq=False)
+class Custom(Bounded):
+    """A function of the configuration that shall be zero, or between two numbers: y = function(q).
+
+    A goal with several numbers and a set of its own is a class with the two methods of ``Goal``.
+
+    Attributes:
+        function: Gives a number, or numbers (m,), for a configuration q (nq,).
+        derivative: Gives the derivative (m, n) of that by the coordinates of the chain; ``None``: central differences.
+        least: The least that each number may be.
+        most: The most.
+
+    Raises:
+        InvalidTarget: If ``function`` is none, or ``least`` is above ``most``. While solving, if the function does not
+            give finite numbers, or the derivative is of another shape.
+    """
+
+    function: Callable[[Array], ArrayLike]
+    _: KW_ONLY
+    derivative: Callable[[Array], ArrayLike] | None = None
+    least: float = 0.0
+    most: float = 0.0
+    unit: ClassVar[str] = ""
+
+    def __post_init__(self) -> None:
+        """Check everything once, where it enters."""
+        super().__post_init__()
+        check_range("what the function gives", self.least, self.most)
+
+    def _values(self, at: Placed) -> Array:
+        given = self.function(at.q.copy())
+        numbers = np.atleast_1d(given) if isinstance(given, (int, float, np.ndarray, np.generic)) else given
+        return array(f"what {_named(self.function)} gives for a configuration", numbers, "m", error=InvalidTarget)
+
+    def _slopes(self, at: Placed) -> Array:
+        if self.derivative is None:
+            steps = [self._values(there) - self._values(back) for there, back in at.around]
+            return np.transpose(steps) / (2.0 * STEP)
+        name, m = f"what {_named(self.derivative)} gives as a derivative", len(self._values(at))
+        return array(name, self.derivative(at.q.copy()), m, at.chain.n, error=InvalidTarget)
+
+    def _bounds(self, at: Placed) -> tuple[float, float]:
+        return self.least, self.most
+
+
+def _named(function: Callable[..., object]) -> str:
+    return str(getattr(function, "__name__", type(function).__name__))

@@ -1,0 +1,92 @@
+"""The goal of a pose for any frame of the robot, in the world or as another frame sees it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import KW_ONLY, dataclass, field
+
+import pinocchio as pin
+from numpy.typing import ArrayLike
+
+from pin_metaik.arguments import checked, checked_as, instance
+from pin_metaik.arrays import Array
+from pin_metaik.errors import InvalidTarget
+from pin_metaik.ik.goals.placed import Placed, check_moved
+from pin_metaik.ik.goals.pose import DEFAULT_TOLERANCE, Target, Tolerance
+from pin_metaik.kinematics import Chain
+
+
+@checked_as(InvalidTarget)
+@dataclass(frozen=True, eq=False)
+class FramePose:
+    """A pose, position or orientation for any frame that the chain moves, with tolerances as those of ``Target``.
+
+    With a ``reference`` it is the pose that this other frame sees: two hands on one tray, a camera over the gripper. A
+    pose in the world for a frame of the chain is better given as a ``Target``, which compiled loops evaluate.
+
+    Attributes:
+        frame: A frame that the chain moves; it need not be one that the chain is made for.
+        pose: The pose it shall have: ``pin.SE3`` or (4, 4).
+        reference: Another frame of the robot, in whose coordinates the pose is; ``None``: the world.
+        position_tolerance: m; see ``Target``; ``inf`` frees the position.
+        orientation_tolerance: rad; ``inf`` frees the orientation.
+        position_weight: What a metre of error counts while searching.
+        orientation_weight: What a radian of error counts while searching.
+
+    Raises:
+        InvalidTarget: As ``Target`` does.
+    """
+
+    frame: str
+    pose: pin.SE3 | ArrayLike
+    _: KW_ONLY
+    reference: str | None = None
+    position_tolerance: Tolerance = DEFAULT_TOLERANCE
+    orientation_tolerance: Tolerance = DEFAULT_TOLERANCE
+    position_weight: float = 1.0
+    orientation_weight: float = 1.0
+    _target: Target = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Check everything once, where it enters."""
+        given = self.position_tolerance, self.orientation_tolerance, self.position_weight, self.orientation_weight
+        object.__setattr__(self, "_target", Target(self.pose, self.frame, *given))
+        object.__setattr__(self, "pose", self._target.pose)
+
+    @staticmethod
+    def at(
+        frame: str, xyz: ArrayLike, *, reference: str | None = None, tolerance: Tolerance = DEFAULT_TOLERANCE
+    ) -> FramePose:
+        """A position (3,) in m, at any orientation."""
+        pose = Target.at(xyz).pose
+        return FramePose(frame, pose, reference=reference, position_tolerance=tolerance, orientation_tolerance=math.inf)
+
+    @checked
+    def check(self, chain: Chain) -> None:
+        """Whether the goal makes sense for a chain.
+
+        Raises:
+            FrameNotFound: If the model has no such frame.
+            FixedFrame: If the chain does not move the frame, in the world or as the reference sees it.
+        """
+        check_moved(chain, self.frame, self.reference)
+
+    def residual(self, at: Placed) -> Array:
+        """(6,) weighted errors of position (m) and orientation (rad) beyond the tolerances."""
+        return self._target._beyond(self._placement(at))
+
+    def jacobian(self, at: Placed) -> Array:
+        """(6, n) derivative of the residual by the coordinates of the chain."""
+        return self._target._slopes(self._placement(at), at.jacobian(self.frame, self.reference))
+
+    def met(self, at: Placed) -> bool:
+        """Whether the frame is within the tolerances."""
+        return self._target.judge(self._placement(at)).met
+
+    def off(self, at: Placed) -> dict[str, float]:
+        """Distance (m) and angle (rad) from the pose, over the axes that count."""
+        return self._target._off(self._placement(at))
+
+    def _placement(self, at: Placed) -> pin.SE3:
+        instance(Placed, at=at)
+        return at.pose(self.frame, self.reference)
