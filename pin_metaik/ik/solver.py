@@ -209,7 +209,8 @@ class IKSolver:
         """
         x0 = problem.chain.x(base)
         budget = Budget(evaluations=max(1, state.left(CHOICE_SHARE)), seconds=self.budget.seconds)
-        if problem.world is None and has_curves(problem):
+        compiled = self.descent.settings(0.0) is not None  # curves are followed by loops of their own
+        if problem.world is None and not problem.wishes and compiled and has_curves(problem):
             motions = find_self_motions(exactly(problem), base, RESOLUTION, budget)
             state.spent += motions.evaluations
             if motions.complete is not None and len(motions):
