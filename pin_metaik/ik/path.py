@@ -119,7 +119,7 @@ def solve_ik_path(
         raise InvalidSetting(f"max_step is above 0, got {bound}")
     chain = chain if q0 is None else chain.at(q0)
     base = chain.reference if q0 is None else chain.configuration(q0)
-    problems = [IKProblem.of(chain, target, world) for target in targets]
+    problems = [IKProblem.of(chain, target, world).at(base) for target in targets]
     layers: list[NDArray[np.float64]] = []
     interrupted = False
     try:
