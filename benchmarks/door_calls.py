@@ -599,6 +599,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.IKProblem.near": lambda: {"count": 3},
     "mik.IKProblem.costs": lambda: {"X": np.array([X6])},
     "mik.IKProblem.verdict": lambda: {"q": np.array(X6)},
+    "mik.IKProblem.placed": lambda: {"x": np.array(X6)},
     "mik.IKProblem.outcomes": lambda: {"q": np.array(X6)},
     "mik.IKProblem.accepts": lambda: {"q": np.array(X6)},
     "mik.IKResult.verify": dict,

@@ -193,13 +193,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sections", nargs="*", choices=[[], *SECTIONS], metavar="SECTION", help=", ".join(SECTIONS))
     parser.add_argument("--count", type=int, default=1000, help="problems a row")
+    parser.add_argument("--out", type=Path, default=PAGE, help="the page to write")
     parser.add_argument("--robots", nargs="+", default=["panda", "ur5", "tiago", "talos"])
     options = parser.parse_args()
     for name in options.sections or SECTIONS:
         title, measure = SECTIONS[name]
         lines = [conditions(), "", *measure(options)]
-        page = PAGE.read_text(encoding="utf-8") if PAGE.exists() else TITLE
-        PAGE.write_text(page_with(page, title, lines), encoding="utf-8")
+        page = options.out.read_text(encoding="utf-8") if options.out.exists() else TITLE
+        options.out.write_text(page_with(page, title, lines), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -63,10 +63,13 @@ def inverse() -> bool:
     world = mik.CollisionWorld(robot, margin=0.001)
     world.add(collision.Obstacle("wall", collision.Box((0.1, 2.0, 2.0)), (-1.0, 0.0, 0.5)))
     free = mik.solve_ik(chain, poses[0], world=world)
+    looking: mik.goals.Goal = mik.goals.LookAt("tool0", (1.0, 0.0, 0.0))
+    looked = mik.solve_ik(chain, [poses[0].translation, looking, mik.goals.Wish(mik.goals.MidRange(0.0))])
+    met: list[bool] = [outcome.met for outcome in looked.goals]
     print(len(names), status.name, proof, len(every), len(batch), path.continuous, seeded.success, free.success)
     move: collision.Move = world.first_contact(q, q)
     print(choice.index, map_.share, place.pose, move.status, world.clear_between(q, q), path.reasons)
-    print(problem, searched.status, mik.REFINERS, world.in_collision(q), world.min_distance(q).distance)
+    print(met, problem, searched.status, mik.REFINERS, world.in_collision(q), world.min_distance(q).distance)
     return result.success
 
 

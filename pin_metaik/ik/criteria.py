@@ -13,7 +13,6 @@ from pin_metaik.arguments import shown
 from pin_metaik.arrays import Array
 from pin_metaik.dexterity import RANK_TOLERANCE, manipulability
 from pin_metaik.errors import InvalidSetting, UnknownName
-from pin_metaik.ik.goals.placed import Placed
 from pin_metaik.ik.gravity import gravity_torque
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.descent import Descent
@@ -109,7 +108,7 @@ def _number(value: object) -> float:
 
 def wished(problem: IKProblem, X: Array, x0: Array) -> Array:
     """What is missing (k,) of the problem's wishes at X (k, n): half the square of their weighted residual."""
-    residuals = [problem.wishes.residual(Placed(problem.chain, q)) for q in problem.chain.q(X)]
+    residuals = [problem.wishes.residual(problem.placed(x)) for x in X]
     missing: Array = 0.5 * np.square(residuals).sum(axis=1)
     return missing
 
@@ -126,7 +125,7 @@ def turned(problem: IKProblem, x: Array, x0: Array, measure: Measure) -> Array:
                 tried = x.copy()
                 tried[c] += turn
                 value = float(measure(problem, tried[None], x0)[0])
-                if value >= best or not problem.goals.met(Placed(problem.chain, problem.chain.q(tried))):
+                if value >= best or not problem.goals.met(problem.placed(tried)):
                     break
                 x, best = tried, value
     return x
@@ -177,7 +176,7 @@ def _steepest(measure: Measure, x0: Array, problem: IKProblem, x: Array) -> Step
 
 def _towards_wishes(problem: IKProblem, x: Array) -> Step:
     """Steps of Gauss and Newton for the residual of the problem's wishes."""
-    at = Placed(problem.chain, problem.chain.q(x))
+    at = problem.placed(x)
     r, J = problem.wishes.residual(at), problem.wishes.jacobian(at)
 
     def step(N: Array) -> Array:

@@ -164,7 +164,7 @@ def solve_ik_path(
         raise InvalidSetting(f"max_step is above 0, got {bound}")
     chain = chain if q0 is None else chain.at(q0)
     base = chain.reference if q0 is None else chain.configuration(q0)
-    problems = [IKProblem.of(chain, target, world) for target in targets]
+    problems = [IKProblem.of(chain, target, world).at(base) for target in targets]
     layers = Layers(problems, base, bound, solver, rng)
     x0 = None if q0 is None else chain.x(base)
     interrupted = False

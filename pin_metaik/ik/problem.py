@@ -64,6 +64,7 @@ class IKProblem:
         world: What must not collide; ``None``: nothing is checked.
         goals: All other goals.
         wishes: What is improved in the freedom that they leave.
+        base: (nq,) where goals and wishes have the joints that the chain does not move; None: at its reference.
     """
 
     chain: Chain
@@ -73,6 +74,7 @@ class IKProblem:
     world: CollisionWorld | None = None
     goals: Goals = NO_GOALS
     wishes: Wishes = NO_WISHES
+    base: NDArray[np.float64] | None = None
 
     @staticmethod
     def of(chain: Chain, target: Asked, world: CollisionWorld | None = None) -> IKProblem:
@@ -120,8 +122,10 @@ class IKProblem:
         return len(self.rows) + sum(self.goals.sizes)
 
     def at(self, q: ArrayLike) -> IKProblem:
-        """The same problem, with the joints that the chain holds where q (nq,) has them; see ``Chain.at``."""
+        """The same problem, with the joints that the chain does not move where q (nq,) has them; see ``Chain.at``."""
         chain = self.chain.at(q)
+        if self.goals or self.wishes:
+            return replace(self, chain=chain, base=chain.configuration(q))
         return self if chain is self.chain else replace(self, chain=chain)
 
     @cached_property
@@ -137,6 +141,10 @@ class IKProblem:
     def loose(self) -> bool:
         """Whether a target allows more than the default tolerance, so that aiming at its middle may be in vain."""
         return any(target.loose for target in self.targets)
+
+    def placed(self, x: NDArray[np.float64]) -> Placed:
+        """The robot at coordinates x (n,), as goals see it."""
+        return Placed(self.chain, self.chain.q(x, self.base))
 
     @property
     def limits(self) -> Limits:
@@ -211,7 +219,7 @@ class IKProblem:
 
         def evaluate(x: NDArray[np.float64]) -> tuple[float, bool]:
             square, met = linearize(*given, x, placed, slopes)
-            at = Placed(chain, chain.q(x))
+            at = self.placed(x)
             r[:t], r[t:] = placed, self.goals.residual(at)
             J[:, :t], J[:, t:] = slopes, self.goals.jacobian(at).T
             return square + float(r[t:] @ r[t:]), met and self.goals.met(at)
@@ -291,7 +299,7 @@ class IKProblem:
         out = np.empty(len(X))
         self.chain.kernels.costs(self.chain.bare, self.records, X, out)
         if self.goals:
-            out += [self.goals.cost(Placed(self.chain, q)) for q in self.chain.q(X)]
+            out += [self.goals.cost(self.placed(x)) for x in X]
         return out
 
     def verdict(self, q: NDArray[np.float64]) -> Verdict:

@@ -88,7 +88,7 @@ class IKResult:
     @property
     def problem(self) -> IKProblem:
         """What was asked."""
-        return IKProblem.of(self.chain, self.target, self.world)
+        return IKProblem.of(self.chain, self.target, self.world).at(self.q)
 
     @property
     def success(self) -> bool:

@@ -146,8 +146,8 @@ def solve_ik_all(
         raise InvalidSetting("all solutions are found by a refiner: give the solver one, e.g. IKSolver(refiner='dls')")
     began = perf_counter()
     chain = chain if q0 is None else chain.at(q0)
-    problem = IKProblem.of(chain, target, world)
     base = chain.reference if q0 is None else chain.configuration(q0)
+    problem = IKProblem.of(chain, target, world).at(base)
     x0 = chain.x(base)
     interrupted = False
     try:

@@ -66,4 +66,5 @@ def solve_ik(
         raise
     if isinstance(first, IKResult) and world is None:
         return first
-    return solver._finish(IKProblem.of(chain, target, world), first, q0, seed)
+    problem = IKProblem.of(chain, target, world)
+    return solver._finish(problem if q0 is None else problem.at(q0), first, q0, seed)

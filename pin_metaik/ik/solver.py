@@ -149,11 +149,16 @@ class IKSolver:
             q0: (nq,) configuration to start from; see ``solve_ik``.
             rng: Seed or generator; a generator is drawn from for every start.
             first: What the pose solver came to, if it has tried the first starts already.
+
+        Raises:
+            InvalidSetting: If there are wishes, and no refiner to improve them with.
         """
         began = perf_counter()
         instance(IKProblem, problem=problem)
         if first is not None:
             instance(Refinement, first=first)
+        if self._descent is None and problem.wishes:
+            raise InvalidSetting("wishes take a refiner, e.g. IKSolver('gwo', 'dls')")
         if q0 is not None:
             problem = problem.at(q0)
         chain = problem.chain
@@ -291,7 +296,7 @@ class IKSolver:
                         return
                 before = state.spent
                 state.add(first(aim, starts, state.left(share)))
-                if aim is problem and not state.over(share):  # the best compromise is mostly next to what is accepted
+                if aim is problem and self.starts is None and not state.over(share):  # next to the best compromise
                     state.add(descent.refine(problem.whole, state.x[None], state.left(share)))
                 if state.over(share) or state.spent == before:
                     return

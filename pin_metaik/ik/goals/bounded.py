@@ -8,10 +8,12 @@ from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 from typing import ClassVar
 
+import numpy as np
+
 from pin_metaik.arguments import checked, instance, number, shown
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidTarget
-from pin_metaik.ik.goals.placed import Placed, check_moved
+from pin_metaik.ik.goals.placed import STEP, Placed, check_moved
 from pin_metaik.ik.goals.pose import DEFAULT_TOLERANCE, WHOLE
 from pin_metaik.ik.goals.sets import Grown
 from pin_metaik.kinematics import Chain
@@ -48,6 +50,11 @@ class Bounded(ABC):
     @abstractmethod
     def _slopes(self, at: Placed) -> Array:
         """Its derivative (m, n) by the coordinates of the chain."""
+
+    def _by_differences(self, at: Placed) -> Array:
+        """The same by central differences, for a function whose derivative is not known."""
+        slopes: Array = np.transpose([self._values(there) - self._values(back) for there, back in at.around])
+        return slopes / (2.0 * STEP)
 
     @abstractmethod
     def _bounds(self, at: Placed) -> tuple[Array | float, Array | float]:

@@ -13,7 +13,7 @@ from pin_metaik.arguments import array, checked_as
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.ik.goals.bounded import Bounded
-from pin_metaik.ik.goals.placed import STEP, Placed
+from pin_metaik.ik.goals.placed import Placed
 from pin_metaik.ik.goals.vectors import check_range
 
 
@@ -54,8 +54,7 @@ class Custom(Bounded):
 
     def _slopes(self, at: Placed) -> Array:
         if self.derivative is None:
-            steps = [self._values(there) - self._values(back) for there, back in at.around]
-            return np.transpose(steps) / (2.0 * STEP)
+            return self._by_differences(at)
         name, m = f"what {_named(self.derivative)} gives as a derivative", len(self._values(at))
         return array(name, self.derivative(at.q.copy()), m, at.chain.n, error=InvalidTarget)
 

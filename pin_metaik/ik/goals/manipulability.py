@@ -13,7 +13,7 @@ from pin_metaik.arrays import Array
 from pin_metaik.dexterity import manipulability
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.ik.goals.bounded import OfFrame
-from pin_metaik.ik.goals.placed import STEP, Placed
+from pin_metaik.ik.goals.placed import Placed
 
 Rows: TypeAlias = Literal["pose", "position", "orientation"]
 ROWS: dict[Rows, slice] = {"pose": slice(0, 6), "position": slice(0, 3), "orientation": slice(3, 6)}
@@ -50,8 +50,7 @@ class Manipulability(OfFrame):
         return np.array([manipulability(at.jacobian(self.frame, self.reference)[ROWS[self.of]])])
 
     def _slopes(self, at: Placed) -> Array:
-        steps = [self._values(there) - self._values(back) for there, back in at.around]
-        return np.reshape(steps, (1, at.chain.n)) / (2.0 * STEP)
+        return self._by_differences(at)
 
     def _bounds(self, at: Placed) -> tuple[float, float]:
         return self.least, math.inf

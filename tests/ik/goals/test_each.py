@@ -159,6 +159,29 @@ def test_goals_that_a_configuration_meets_are_solved_and_verified_without_them(k
         assert [one.met for one in result.goals] == [True] * len(asked)
 
 
+def test_joints_off_the_chain_are_where_q0_has_them_for_goals_too() -> None:
+    arm, rng = chain_of("talos"), np.random.default_rng(5)
+    model = arm.model
+    for _ in range(3):
+        there = rng.uniform(np.maximum(model.lowerPositionLimit, -1.0), np.minimum(model.upperPositionLimit, 1.0))
+        q = arm.q(arm.box.sample(rng, 1)[0], there)
+        at = goals.Placed(arm, q)
+        height = float(at.centre_of_mass[2])
+        other = at.pose("gripper_left_base_link", "gripper_right_base_link").translation
+        asked = [
+            goals.CentreOfMass(least=height, most=height),
+            goals.FramePose.at("gripper_left_base_link", other, reference="gripper_right_base_link"),
+            goals.Wish(goals.Posture(q)),
+        ]
+        start = arm.q(arm.x(arm.reference), there)
+        result = mik.solve_ik(arm, asked, start)
+        assert result.success, result.why
+        assert result.verify()
+        assert goals.Placed(arm, result.q).centre_of_mass[2] == pytest.approx(height, abs=1.1e-5)
+        assert len(mik.solve_ik_all(arm, asked, start, limit=2)) > 0
+        assert mik.solve_ik_path(arm, [asked, asked], start).success.all()
+
+
 def test_two_hands_of_a_humanoid_hold_one_tray() -> None:
     arm, rng = chain("two frames"), np.random.default_rng(2)
     left, right = arm.frames

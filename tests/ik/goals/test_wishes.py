@@ -5,6 +5,7 @@ import pytest
 
 import pin_metaik as mik
 from pin_metaik import goals
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik.goals import Wish
 from tests.collision.worlds import world_of
 from tests.robots_under_test import chain_of
@@ -106,3 +107,9 @@ def test_a_wish_goes_through_batches_and_choices() -> None:
     assert np.array_equal(batch.q, [one.q for one in alone])
     chosen = mik.solve_ik(chain, [first, wish], solver=mik.IKSolver(select="nearest"))
     assert chosen.success
+
+
+def test_a_wish_takes_a_refiner() -> None:
+    chain = chain_of("ur5")
+    with pytest.raises(InvalidSetting, match="wishes take a refiner"):
+        mik.solve_ik(chain, Wish(goals.MidRange(0)), solver=mik.IKSolver("gwo", None))
