@@ -19,7 +19,7 @@ from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.model import as_configuration
 from pin_metaik.motion.step import FollowerStep, Following
-from pin_metaik.motion.stops import Stopping, Stops, Surroundings
+from pin_metaik.motion.stops import Pair, Stopping, Stops, Surroundings
 from pin_metaik.optimize.settings import positive
 from pin_metaik.randomness import Rng
 from pin_metaik.timing.limits import MotionLimits
@@ -249,13 +249,23 @@ class Follower:
         wanted, braked = self._out[0], self._out[1]
         share = 1.0
         if around.rooms and self._stops is not None:
-            tries = (
-                s for s in SHARES if self._stops.free(around.rooms, self._stopping(q, braked + s * (wanted - braked)))
-            )
-            share = next(tries, 0.0)
+            share = self._share(self._stops, q, around.rooms)
         self.v = wanted.copy() if share == 1.0 else braked + share * (wanted - braked)
         limits = chain.limits
         return share, chain.q(np.minimum(np.maximum(x + self._dt * self.v, limits.lower), limits.upper), q)
+
+    def _share(self, stops: Stops, q: NDArray[np.float64], rooms: dict[Pair, float]) -> float:
+        """The largest share, of those tried, of the change from braking to the speeds wanted, that is proved free."""
+        wanted, braked = self._out[0], self._out[1]
+
+        def stopping(share: float) -> Stopping:
+            return self._stopping(q, braked + share * (wanted - braked))
+
+        for share in SHARES:
+            if stops.free(rooms, stopping(share)):
+                return share
+        tiny = SHARES[-1] * stops.harmless(rooms, stopping(SHARES[-1]))  # from rest, it is free without a look
+        return tiny if stops.free(rooms, stopping(tiny)) else 0.0
 
     def _stopped(self) -> tuple[str, ...]:
         """Names of the joints that stand at limits which the way leads beyond."""

@@ -44,7 +44,8 @@ YIELDING = 1e-4  # damping of what other joints do for those that may not move a
 GENTLY = 0.5  # of the acceleration, to brake for a target: the rest is for ways that turn out to bend
 STIFFER = 8  # times that damping is made four times as large, until the speeds of the targets ask too much of no joint
 PUSH = 100.0  # what 1 m/s too fast towards an obstacle counts, in m/s of the tip
-ROUNDS = 3  # of solutions, in each of which obstacles that are still approached too fast are added
+PASSES = 10  # of least squares, at most; each adds obstacles that are approached too fast, and frees or holds joints
+SETTLED = 1e-6  # rad/s or m/s; speeds that change by less in a pass have been found
 
 SLOW = 1e-9  # m/s
 AT = 1e-6  # rad or m from its limit, where a joint stands at it
@@ -119,6 +120,7 @@ class TickScratch(NamedTuple):
         lead: (m,) by how much the targets moved since the last tick.
         best: (n,) speeds that would be best.
         start: (n,) speeds on the way there.
+        last: (n,) speeds before a pass.
         low: (n,) slowest speeds.
         high: (n,) fastest speeds.
         gaps: (p, n + 1) growth of the distances by coordinate; and, from 1 on, where among the rows it has come to be.
@@ -129,6 +131,7 @@ class TickScratch(NamedTuple):
     lead: Floats
     best: Floats
     start: Floats
+    last: Floats
     low: Floats
     high: Floats
     gaps: Floats
@@ -143,7 +146,15 @@ def tick_scratch(n: int, m: int, S: int, p: int) -> TickScratch:
         np.empty((n, a)), np.empty((a, a)), np.empty(a), np.empty(n), np.empty(n), np.empty(n),
     )  # fmt: skip
     return TickScratch(
-        descent, np.empty(m), np.empty(m), np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty((p, n + 1))
+        descent,
+        np.empty(m),
+        np.empty(m),
+        np.empty(n),
+        np.empty(n),
+        np.empty(n),
+        np.empty(n),
+        np.empty(n),
+        np.empty((p, n + 1)),
     )
 
 
@@ -261,7 +272,7 @@ def aim_in(
     chain = unpack(block)
     bounds, most, dv, wish = chain.bounds, motion[0], motion[1], motion[2]
     descent, error, best, low, high, gaps = work.descent, work.error, work.best, work.low, work.high, work.gaps
-    J, r = descent.J, descent.r
+    J, r, last = descent.J, descent.r, work.last
     n, m, p = x.shape[0], rows.shape[0], near.rows.shape[0]
     if p > 0:
         spread(block, x, near, work)
@@ -313,20 +324,25 @@ def aim_in(
     # As far towards them as all joints get together; from there on each by itself, as far as it is allowed.
     together(v, best, dv, work.start)
     allowed(bounds, x, v, most, dv, dt, low, high)
+    for j in range(n):
+        descent.x[j] = min(max(work.start[j], low[j]), high[j])
     active = 0
     for i in range(p):
         gaps[i, n] = 0.0
-    for _ in range(ROUNDS):
-        for a in range(m):
+    for _ in range(PASSES):
+        for j in range(n):
+            last[j] = descent.x[j]
+        for a in range(m + active):
             r[a] = 0.0
             for j in range(n):
-                r[a] -= J[j, a] * best[j]
+                r[a] += J[j, a] * (descent.x[j] - best[j] if a < m else descent.x[j])
         for i in range(p):
             if gaps[i, n] > 0.0:
-                r[m + int(gaps[i, n]) - 1] = PUSH * near.rows[i, APPROACH]
-        begin(J, low, high, work.start, m + active, descent)
+                r[m + int(gaps[i, n]) - 1] += PUSH * near.rows[i, APPROACH]
         step(Bounds(low, high, bounds.winds), m + active, YIELDING, descent)
-        known = active
+        known, change = active, 0.0
+        for j in range(n):
+            change = max(change, abs(descent.x[j] - last[j]))
         for i in range(p):
             growth = near.rows[i, APPROACH]
             for j in range(n):
@@ -336,7 +352,7 @@ def aim_in(
                     J[j, m + active] = PUSH * gaps[i, j]
                 active += 1
                 gaps[i, n] = active
-        if active == known:
+        if active == known and change < SETTLED:
             break
     for j in range(n):
         out[SPEED, j] = descent.x[j]

@@ -171,6 +171,16 @@ class Stops:
         pending = {pair: room for pair, room in pending.items() if room > 0.0}  # what collides may part
         return self._free(stopping, (0.0, pending), (stopping.ticks, ends), LOOKS)
 
+    def harmless(self, rooms: dict[Pair, float], stopping: Stopping) -> float:
+        """The share of a braking motion that takes no pair more of its distance than it may; at most 1."""
+        way = stopping.way(0.0, math.inf)
+        share = 1.0
+        for (i, _, k), room in rooms.items():
+            travel = float(self._lever(i, k) @ way)
+            if travel > 0.0:
+                share = min(share, max((1.0 - SHRINKING) * room, 0.0) / travel)
+        return share
+
     def _free(
         self, stopping: Stopping, a: tuple[float, dict[Pair, float]], b: tuple[float, dict[Pair, float]], looks: int
     ) -> bool:
