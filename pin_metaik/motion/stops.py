@@ -19,6 +19,7 @@ STALE = 0.2  # of a distance that bodies may have moved until it is measured aga
 INFLUENCE = 0.1  # m; bodies farther apart beyond their margin do not slow anything down
 DAMPING = 4.0  # 1/s; speed of approach that a metre of distance beyond the clearance allows
 SHRINKING = 0.5  # of the distance that is left within the clearance, what must be left when the robot stands
+ROUNDING = 1e-6  # m
 FAR = 1e6  # m; a lever of what has no bounds: it is free only while such a joint stands
 LOOKS = 4  # times that a braking motion is cut in two
 
@@ -137,9 +138,12 @@ class Stops:
         """The distance of a pair where it is placed now."""
         checker = self.checker
         room, normal = checker.room(placed, i, j, k, self.clearance), placed.normal
+        first, second = placed.points
         row = None
-        if 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none
-            row = [*normal, *placed.points[0], *placed.points[1], DAMPING * (room - self.clearance)]
+        if not 0.5 < float(normal @ normal) < 2.0 and room > ROUNDING:  # meshes have none
+            normal = (second - first) / np.linalg.norm(second - first)
+        if 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none either way
+            row = [*normal, *first, *second, DAMPING * (room - self.clearance)]
         return Known(room, self._gone, row, (checker.joint_of(i), checker.joint_of(j)))
 
     def _lever(self, i: int, k: int) -> NDArray[np.float64]:
