@@ -30,6 +30,7 @@ LOST = 0.5  # of the square of an error: where no direction makes up more than t
 SWITCHES = 32  # solutions to choose from, at most
 THERE = 1e-9  # rad or m from a configuration that is moved to
 GENTLE = 0.25  # of the greatest speed, at most, towards the posture
+NO_MOVES = np.empty((0, 0), dtype=np.int64)
 NOTHING_NEAR = Surroundings({}, np.empty((0, 10)), np.empty((0, 2), dtype=np.int64))
 
 
@@ -65,7 +66,7 @@ class Follower:
     position controller are best made from the commands before: ``step(target, last.q)``.
 
     It moves towards a target by damped least squares with these intervals inside, leads a target that moves by its
-    speed since the last tick, and slows down in time so that no joint overshoots. In a singularity the damping lets go
+    speed since the last tick, and slows down in time for one that stands. In a singularity the damping lets go
     of the directions that are lost, smoothly, and the target is missed for a while; a target out of reach is approached
     as near as the linearised arm sees it, without swinging. Jerk is not limited. It never jumps to another branch of
     solutions: where its own ends, it goes along the limits as near to the target as it can, and ``step`` says so;
@@ -119,9 +120,7 @@ class Follower:
         self._motion = np.array([limits.velocity, limits.acceleration * self._dt, np.zeros(chain.n)])
         self._gentle = GENTLE * limits.velocity
         self._stops = None if world is None else Stops(chain, world, clearance)
-        self._moves = np.zeros((chain.model.njoints, len(chain.paths.joints)), dtype=np.int64)
-        if self._stops is not None:
-            self._moves = self._stops.moves
+        self._moves = NO_MOVES if self._stops is None else self._stops.moves
         self._out, self._sizes = np.empty((3, chain.n)), np.empty(2)
         self._before: IKProblem | None = None
         self._loops = _loops()

@@ -245,7 +245,7 @@ class Stopping:
 
 def _extent(placement: pin.SE3, box: NDArray[np.float64]) -> float:
     """How far the ball around a body reaches from the origin of the joint that carries it, m."""
-    return float(np.linalg.norm(placement.act(box[:3])) + box[6])
+    return min(float(np.linalg.norm(placement.act(box[:3])) + box[6]), FAR)
 
 
 def _levers(chain: Chain, carrier: int, extent: float) -> dict[int, NDArray[np.float64]]:

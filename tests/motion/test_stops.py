@@ -89,6 +89,20 @@ def test_at_a_wall_it_slides_along_and_says_what_holds_it() -> None:
     assert step.status is mik.Following.ON_TARGET
 
 
+def test_what_it_holds_is_kept_clear_as_well() -> None:
+    chain, world = walled(0.45)
+    world.attach("stick", collision.Box((0.02, 0.02, 0.3)), "panda_hand_tcp", np.array([0.0, 0.0, 0.15]))
+    follower, q = mik.Follower(chain, RATE, mik.MotionLimits.of(chain, acceleration=HARD), world), HOME
+    pose = chain.placements(q)[0]
+    forward = pin.SE3(pin.exp3(np.array([0.0, -np.pi / 2, 0.0])) @ pose.rotation, pose.translation)
+    for _ in range(300):  # the stick, which hangs down, is to point through the wall
+        step = follower.step(moved(forward, 0.2, 0.0, 0.0), q)
+        q = step.q
+        assert not world.in_collision(q)
+    assert step.status is mik.Following.NEAR_COLLISION
+    assert world.min_distance(q).distance < 0.02
+
+
 def test_an_obstacle_that_comes_near_pushes_it_away() -> None:
     chain, world = walled(0.1)
     follower, q = mik.Follower(chain, RATE, mik.MotionLimits.of(chain, acceleration=HARD), world), HOME
