@@ -174,7 +174,7 @@ class Placed:
 
         self.solids = solids
         self.data, self.shapes = solids.model.createData(), solids.geometry.createData()
-        self.poses = _poses(self.shapes.oMg)
+        self.poses, self.joints = _poses(self.shapes.oMg), _poses(self.data.oMi)
         self.moving = len(self.poses)
         self._turns = [pose[:9].reshape(3, 3).T for pose in self.poses]
         self._shifts = [pose[9:] for pose in self.poses]
