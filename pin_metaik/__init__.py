@@ -30,7 +30,7 @@ from pin_metaik.ik import (
     solve_ik_path,
 )
 from pin_metaik.kinematics import Chain, Limits
-from pin_metaik.motion import Follower, FollowerStep, Following
+from pin_metaik.motion import Follower, FollowerStatus, FollowerStep
 from pin_metaik.optimize import ALGORITHMS, AskTell, Box, Budget, Metaheuristic, Search, minimize
 from pin_metaik.robots import Robot, load_robot, robot_names
 from pin_metaik.timing import MotionLimits, TimedPath, time_path
@@ -47,8 +47,8 @@ __all__ = [
     "Chain",
     "CollisionWorld",
     "Follower",
+    "FollowerStatus",
     "FollowerStep",
-    "Following",
     "IKBatch",
     "IKPath",
     "IKProblem",

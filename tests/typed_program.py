@@ -46,9 +46,9 @@ def inverse() -> bool:
     limits_of_motion: mik.MotionLimits = mik.MotionLimits.of(chain, acceleration=8.0)
     follower = mik.Follower(chain, rate=500.0, limits=limits_of_motion)
     tick: mik.FollowerStep = follower.step(poses[0], q)
-    why: mik.Following = tick.status
+    why: mik.FollowerStatus = tick.status
     timed: mik.TimedPath = mik.time_path(chain, [q, chain.q(np.full(chain.n, 0.4))])
-    print(why.value, timed.duration, timed.sample(0.01).v.shape)
+    print(why.name, timed.duration, timed.sample(0.01).v.shape)
     target = mik.Target(poses[0], orientation_tolerance=(1e-5, 1e-5, np.inf))
     budget = mik.Budget(evaluations=2000)
     solver = mik.IKSolver("gwo", mik.DLS(), budget=budget)

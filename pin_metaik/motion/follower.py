@@ -1,4 +1,4 @@
-"""Following a target that moves, tick by tick: for teleoperation and servoing."""
+"""FollowerStatus a target that moves, tick by tick: for teleoperation and servoing."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from pin_metaik.ik.problem import check_world
 from pin_metaik.ik.target import TargetLike
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.model import as_configuration
-from pin_metaik.motion.step import FollowerStep, Following
+from pin_metaik.motion.step import FollowerStatus, FollowerStep
 from pin_metaik.motion.stops import Pair, Stopping, Stops, Surroundings
 from pin_metaik.optimize.settings import positive
 from pin_metaik.randomness import Rng
@@ -156,13 +156,13 @@ class Follower:
         met = self._loops.judge(chain.bare, problem.tasks, problem.rows, chain.x(after), self._sizes)
         stopped = self._stopped()
         if met:
-            status = Following.ON_TARGET
+            status = FollowerStatus.ON_TARGET
         elif share < 1.0 or pushed:
-            status = Following.NEAR_COLLISION
+            status = FollowerStatus.NEAR_COLLISION
         elif lost > LOST:
-            status = Following.AT_LIMITS if stopped else Following.NO_DIRECTION
+            status = FollowerStatus.AT_LIMITS if stopped else FollowerStatus.NO_DIRECTION
         else:
-            status = Following.UNDER_WAY
+            status = FollowerStatus.UNDER_WAY
         position, orientation = self._sizes.tolist()
         return FollowerStep(after, self.v.copy(), status, position, orientation, share, stopped)
 
@@ -185,7 +185,13 @@ class Follower:
         self._loops.head(chain.bare, way, x, self.v, self._motion, self._dt, self._out)
         share, after = self._go(chain, at, x, around)
         there = bool((np.abs(chain.limits.way(chain.x(after), end)) <= THERE).all())
-        status = Following.ON_TARGET if there else Following.UNDER_WAY if share == 1.0 else Following.NEAR_COLLISION
+        status = (
+            FollowerStatus.ON_TARGET
+            if there
+            else FollowerStatus.UNDER_WAY
+            if share == 1.0
+            else FollowerStatus.NEAR_COLLISION
+        )
         return FollowerStep(after, self.v.copy(), status, math.nan, math.nan, share)
 
     def stop(self, q: ArrayLike) -> FollowerStep:

@@ -81,13 +81,13 @@ def test_at_a_wall_it_slides_along_and_says_what_holds_it() -> None:
     for _ in range(500):
         step = follower.step(target, q)
         q = step.q
-    assert step.status is mik.Following.NEAR_COLLISION
+    assert step.status is mik.FollowerStatus.NEAR_COLLISION
     assert_allclose(world.min_distance(q).distance, 0.02, atol=5e-3)
     assert chain.placements(q)[0].translation[1] > 0.15  # along the wall it has gone all the same
     for _ in range(500):
         step = follower.step(start, q)
         q = step.q
-    assert step.status is mik.Following.ON_TARGET
+    assert step.status is mik.FollowerStatus.ON_TARGET
 
 
 def test_what_it_holds_is_kept_clear_as_well() -> None:
@@ -100,7 +100,7 @@ def test_what_it_holds_is_kept_clear_as_well() -> None:
         step = follower.step(moved(forward, 0.2, 0.0, 0.0), q)
         q = step.q
         assert not world.in_collision(q)
-    assert step.status is mik.Following.NEAR_COLLISION
+    assert step.status is mik.FollowerStatus.NEAR_COLLISION
     assert world.min_distance(q).distance < 0.02
 
 
