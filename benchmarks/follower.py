@@ -74,7 +74,7 @@ def exceeded(name: str, ticks: int) -> list[object]:
     limits = limits_of(chain)
     follower = mik.Follower(chain, RATE, limits, posture=chain.reference)
     q = chain.q(chain.limits.box().sample(rng, 1)[0])
-    x, target, left, status = [chain.x(q)], any_target(chain, rng), 0, dict.fromkeys(mik.Following, 0)
+    x, target, left, status = [chain.x(q)], any_target(chain, rng), 0, dict.fromkeys(mik.FollowerStatus, 0)
     worst = np.full(3, -np.inf)
     v = np.zeros((1, chain.n))
     for i in track(range(ticks), name):
@@ -93,7 +93,7 @@ def exceeded(name: str, ticks: int) -> list[object]:
             outside = np.maximum(rows - chain.limits.upper, chain.limits.lower - rows)
             worst = np.maximum(worst, [fast.max(), hard.max() * RATE, outside.max()])
             x, v = x[-1:], speeds[-1:]
-    seen = ", ".join(f"{100 * n / ticks:.0f} % {one.value}" for one, n in status.items() if n)
+    seen = ", ".join(f"{100 * n / ticks:.0f} % {one}" for one, n in status.items() if n)
     return [name, f"{ticks:,}", *(f"{one:.1e}" for one in worst), seen]
 
 
@@ -241,7 +241,7 @@ def in_a_world(scene: str, ticks: int) -> list[object]:
         between = chain.x(q) + np.linspace(0.2, 1.0, 5)[:, None] * step.v / RATE
         collided += int(world.in_collision_batch(chain.q(between, q), workers=1).sum())
         q = step.q
-        held += step.status is mik.Following.NEAR_COLLISION
+        held += step.status is mik.FollowerStatus.NEAR_COLLISION
         if i % 10 == 0:
             nearest = min(nearest, world.min_distance(q).distance)
     us = 1e6 * np.array(spent)

@@ -40,7 +40,7 @@ def main() -> None:
     missed = 1e3 * np.array([step.position_error for step in steps])
     v = np.array([step.v for step in steps])
     a = np.diff(v, axis=0) * RATE
-    lost = np.array([step.status is mik.Following.NO_DIRECTION for step in steps])
+    lost = np.array([step.status is mik.FollowerStatus.NO_DIRECTION for step in steps])
     later = times > 2.0
     wrist = np.array([step.q[4] for step in steps])
     crossed = int((np.diff(np.sign(wrist[later])) != 0).sum())
@@ -48,14 +48,14 @@ def main() -> None:
     print(f"later it crosses the singularity {crossed} times, and misses by {missed[later].max():.6f} mm at most")
     print(f"fastest joint: {(np.abs(v) / follower.limits.velocity).max():.3f} of its limit of speed,")
     print(f"               {(np.abs(a) / follower.limits.acceleration).max():.3f} of its limit of acceleration")
-    print(f"'no direction' in {lost.sum()} of {len(steps)} ticks; at the end: {steps[-1].status.value}")
+    print(f"NO_DIRECTION in {lost.sum()} of {len(steps)} ticks; at the end: {steps[-1].status}")
 
     # A target that cannot be had: it says why, and whether there is another branch to go to.
     for _ in range(3000):
         step = follower.step(moved(singular, 0.8, 0.0, 0.0), q)
         q = step.q
     other = follower.switch(singular, q)
-    print(f"\n0.8 m farther out: {step.status.value}, {step.position_error:.3f} m away, standing still")
+    print(f"\n0.8 m farther out: {step.status}, {step.position_error:.3f} m away, standing still")
     print("back by joints to", np.round(other, 2))
     while not (step := follower.move(other, q)):
         q = step.q

@@ -16,18 +16,17 @@ def main() -> None:
     poses = [pin.SE3(start.rotation, start.translation + np.array([0.0, y, 0.0])) for y in np.linspace(0.0, 0.5, 100)]
     path = mik.solve_ik_path(chain, poses, home)
 
-    for name, timed in (
-        ("quickest, by toppra", path.timed(acceleration=ACCELERATION)),
-        ("with jerk below 3000 rad/s^3, by ruckig", path.timed(acceleration=ACCELERATION, jerk=3000.0)),
-    ):
+    quickest = path.timed(acceleration=ACCELERATION)
+    gentler = path.timed(acceleration=ACCELERATION, jerk=3000.0)
+    for name, timed in ("quickest, by toppra", quickest), ("with jerk below 3000 rad/s^3, by ruckig", gentler):
         samples = timed.sample(0.001)
         speed, acceleration = np.abs(samples.v) / timed.limits.velocity, np.abs(samples.a) / timed.limits.acceleration
         print(f"{name}: {timed.duration:.3f} s, the hand at most at {samples.tip_speed.max():.2f} m/s")
         print(f"  largest speed {speed.max():.3f}, acceleration {acceleration.max():.3f} of the limits")
 
-    timed.write_csv("motion.csv", every=0.01)
-    timed.write_joint_trajectory("motion.json", every=0.01)  # trajectory_msgs/JointTrajectory, for ROS controllers
-    timed.plot("motion.png")
+    quickest.write_csv("motion.csv", every=0.01)
+    quickest.write_joint_trajectory("motion.json", every=0.01)  # trajectory_msgs/JointTrajectory, for ROS controllers
+    quickest.plot("motion.png")
     print("written: motion.csv, motion.json; drawn: motion.png")
 
 

@@ -37,7 +37,7 @@ from pin_metaik.ik import (
     solve_ik_path,
 )
 from pin_metaik.kinematics import Chain, Limits
-from pin_metaik.motion import Follower, FollowerStep, Following
+from pin_metaik.motion import Follower, FollowerStatus, FollowerStep
 from pin_metaik.optimize import ALGORITHMS, AskTell, Box, Budget, Metaheuristic, Search, minimize
 from pin_metaik.reachable import BasePlacement, Reachability, place_base, reachability
 from pin_metaik.robots import Robot, load_robot, robot_names
@@ -56,8 +56,8 @@ __all__ = [
     "Chain",
     "CollisionWorld",
     "Follower",
+    "FollowerStatus",
     "FollowerStep",
-    "Following",
     "IKBatch",
     "IKChoice",
     "IKPath",

@@ -46,9 +46,9 @@ def inverse() -> bool:
     limits_of_motion: mik.MotionLimits = mik.MotionLimits.of(chain, acceleration=8.0)
     follower = mik.Follower(chain, rate=500.0, limits=limits_of_motion)
     tick: mik.FollowerStep = follower.step(poses[0], q)
-    why: mik.Following = tick.status
+    why: mik.FollowerStatus = tick.status
     timed: mik.TimedPath = mik.time_path(chain, [q, chain.q(np.full(chain.n, 0.4))])
-    print(why.value, timed.duration, timed.sample(0.01).v.shape)
+    print(why.name, timed.duration, timed.sample(0.01).v.shape)
     choice: mik.IKChoice = mik.solve_ik_any(chain, [poses[0], poses[0]])
     map_: mik.Reachability = mik.reachability(chain, [poses[0].translation], 2)
     place: mik.BasePlacement = mik.place_base(chain, [poses[0]], budget=mik.Budget(evaluations=20))

@@ -8,6 +8,6 @@ step.q, step.v, step.status
 """
 
 from pin_metaik.motion.follower import Follower
-from pin_metaik.motion.step import FollowerStep, Following
+from pin_metaik.motion.step import FollowerStatus, FollowerStep
 
-__all__ = ["Follower", "FollowerStep", "Following"]
+__all__ = ["Follower", "FollowerStatus", "FollowerStep"]

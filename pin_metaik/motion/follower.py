@@ -1,4 +1,4 @@
-"""Following a target that moves, tick by tick: for teleoperation and servoing."""
+"""FollowerStatus a target that moves, tick by tick: for teleoperation and servoing."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from pin_metaik.ik.goals.pose import TargetLike
 from pin_metaik.ik.problem import check_world
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.model import as_configuration
-from pin_metaik.motion.step import FollowerStep, Following
-from pin_metaik.motion.stops import Stopping, Stops, Surroundings
+from pin_metaik.motion.step import FollowerStatus, FollowerStep
+from pin_metaik.motion.stops import Pair, Stopping, Stops, Surroundings
 from pin_metaik.optimize.settings import positive
 from pin_metaik.randomness import Rng
 from pin_metaik.timing.limits import MotionLimits
@@ -30,6 +30,7 @@ LOST = 0.5  # of the square of an error: where no direction makes up more than t
 SWITCHES = 32  # solutions to choose from, at most
 THERE = 1e-9  # rad or m from a configuration that is moved to
 GENTLE = 0.25  # of the greatest speed, at most, towards the posture
+NO_MOVES = np.empty((0, 0), dtype=np.int64)
 NOTHING_NEAR = Surroundings({}, np.empty((0, 10)), np.empty((0, 2), dtype=np.int64))
 
 
@@ -65,7 +66,7 @@ class Follower:
     position controller are best made from the commands before: ``step(target, last.q)``.
 
     It moves towards a target by damped least squares with these intervals inside, leads a target that moves by its
-    speed since the last tick, and slows down in time so that no joint overshoots. In a singularity the damping lets go
+    speed since the last tick, and slows down in time for one that stands. In a singularity the damping lets go
     of the directions that are lost, smoothly, and the target is missed for a while; a target out of reach is approached
     as near as the linearised arm sees it, without swinging. Jerk is not limited. It never jumps to another branch of
     solutions: where its own ends, it goes along the limits as near to the target as it can, and ``step`` says so;
@@ -119,9 +120,7 @@ class Follower:
         self._motion = np.array([limits.velocity, limits.acceleration * self._dt, np.zeros(chain.n)])
         self._gentle = GENTLE * limits.velocity
         self._stops = None if world is None else Stops(chain, world, clearance)
-        self._moves = np.zeros((chain.model.njoints, len(chain.paths.joints)), dtype=np.int64)
-        if self._stops is not None:
-            self._moves = self._stops.moves
+        self._moves = NO_MOVES if self._stops is None else self._stops.moves
         self._out, self._sizes = np.empty((3, chain.n)), np.empty(2)
         self._before: IKProblem | None = None
         self._loops = _loops()
@@ -159,13 +158,13 @@ class Follower:
         met = self._loops.judge(chain.bare, problem.records, problem.rows, chain.x(after), self._sizes)
         stopped = self._stopped()
         if met:
-            status = Following.ON_TARGET
+            status = FollowerStatus.ON_TARGET
         elif share < 1.0 or pushed:
-            status = Following.NEAR_COLLISION
+            status = FollowerStatus.NEAR_COLLISION
         elif lost > LOST:
-            status = Following.AT_LIMITS if stopped else Following.NO_DIRECTION
+            status = FollowerStatus.AT_LIMITS if stopped else FollowerStatus.NO_DIRECTION
         else:
-            status = Following.UNDER_WAY
+            status = FollowerStatus.UNDER_WAY
         position, orientation = self._sizes.tolist()
         return FollowerStep(after, self.v.copy(), status, position, orientation, share, stopped)
 
@@ -188,7 +187,13 @@ class Follower:
         self._loops.head(chain.bare, way, x, self.v, self._motion, self._dt, self._out)
         share, after = self._go(chain, at, x, around)
         there = bool((np.abs(chain.limits.way(chain.x(after), end)) <= THERE).all())
-        status = Following.ON_TARGET if there else Following.UNDER_WAY if share == 1.0 else Following.NEAR_COLLISION
+        status = (
+            FollowerStatus.ON_TARGET
+            if there
+            else FollowerStatus.UNDER_WAY
+            if share == 1.0
+            else FollowerStatus.NEAR_COLLISION
+        )
         return FollowerStep(after, self.v.copy(), status, math.nan, math.nan, share)
 
     def stop(self, q: ArrayLike) -> FollowerStep:
@@ -251,13 +256,23 @@ class Follower:
         wanted, braked = self._out[0], self._out[1]
         share = 1.0
         if around.rooms and self._stops is not None:
-            tries = (
-                s for s in SHARES if self._stops.free(around.rooms, self._stopping(q, braked + s * (wanted - braked)))
-            )
-            share = next(tries, 0.0)
+            share = self._share(self._stops, q, around.rooms)
         self.v = wanted.copy() if share == 1.0 else braked + share * (wanted - braked)
         limits = chain.limits
         return share, chain.q(np.minimum(np.maximum(x + self._dt * self.v, limits.lower), limits.upper), q)
+
+    def _share(self, stops: Stops, q: NDArray[np.float64], rooms: dict[Pair, float]) -> float:
+        """The largest share, of those tried, of the change from braking to the speeds wanted, that is proved free."""
+        wanted, braked = self._out[0], self._out[1]
+
+        def stopping(share: float) -> Stopping:
+            return self._stopping(q, braked + share * (wanted - braked))
+
+        for share in SHARES:
+            if stops.free(rooms, stopping(share)):
+                return share
+        tiny = SHARES[-1] * stops.harmless(rooms, stopping(SHARES[-1]))  # from rest, it is free without a look
+        return tiny if stops.free(rooms, stopping(tiny)) else 0.0
 
     def _stopped(self) -> tuple[str, ...]:
         """Names of the joints that stand at limits which the way leads beyond."""

@@ -32,7 +32,7 @@ from pin_metaik.kinematics.kernel.layout import (
     WEIGHT,
     Bounds,
 )
-from pin_metaik.kinematics.kernel.scratch import Scratch
+from pin_metaik.kinematics.kernel.scratch import Scratch, scratch_for
 
 # What was measured on ur5, a circle through its wrist's singularity in 4 s, and on panda at the edge of its reach: with
 # ten times this floor the circle is missed by three times as much, with a tenth accelerations are a third higher. With
@@ -44,15 +44,13 @@ YIELDING = 1e-4  # damping of what other joints do for those that may not move a
 GENTLY = 0.5  # of the acceleration, to brake for a target: the rest is for ways that turn out to bend
 STIFFER = 8  # times that damping is made four times as large, until the speeds of the targets ask too much of no joint
 PUSH = 100.0  # what 1 m/s too fast towards an obstacle counts, in m/s of the tip
-ROUNDS = 3  # of solutions, in each of which obstacles that are still approached too fast are added
+PASSES = 10  # of least squares, at most; each adds obstacles that are approached too fast, and frees or holds joints
+SETTLED = 1e-6  # rad/s or m/s; speeds that change by less in a pass have been found
 
 SLOW = 1e-9  # m/s
 AT = 1e-6  # rad or m from its limit, where a joint stands at it
-SPEED, BRAKED, STOPPED = (
-    0,
-    1,
-    2,
-)  # rows of what a tick comes to: speeds, those of braking, and 1 where a limit is in the way
+# Rows of what a tick comes to: speeds, those of braking, and 1 where a limit is in the way.
+SPEED, BRAKED, STOPPED = 0, 1, 2
 
 # A row of what comes near: a unit vector from the first body to the second, a point on either, m, and the greatest
 # speed at which they may approach, m/s; numbers of the joints that carry them.
@@ -119,6 +117,7 @@ class TickScratch(NamedTuple):
         lead: (m,) by how much the targets moved since the last tick.
         best: (n,) speeds that would be best.
         start: (n,) speeds on the way there.
+        last: (n,) speeds before a pass.
         low: (n,) slowest speeds.
         high: (n,) fastest speeds.
         gaps: (p, n + 1) growth of the distances by coordinate; and, from 1 on, where among the rows it has come to be.
@@ -129,6 +128,7 @@ class TickScratch(NamedTuple):
     lead: Floats
     best: Floats
     start: Floats
+    last: Floats
     low: Floats
     high: Floats
     gaps: Floats
@@ -137,14 +137,11 @@ class TickScratch(NamedTuple):
 @allocating
 def tick_scratch(n: int, m: int, S: int, p: int) -> TickScratch:
     """For m rows of targets and p of obstacles."""
-    a = m + p
-    descent = Scratch(
-        np.empty((S, 3)), np.empty((S, 3)), np.empty(12), np.empty(6), np.empty(6), np.empty((n, 6)), np.empty(a),
-        np.empty((n, a)), np.empty((a, a)), np.empty(a), np.empty(n), np.empty(n), np.empty(n),
-    )  # fmt: skip
+    descent = scratch_for(n, np.empty((m + p, 2), np.int64), S)
     return TickScratch(
-        descent, np.empty(m), np.empty(m), np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty((p, n + 1))
-    )
+        descent, np.empty(m), np.empty(m), np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n),
+        np.empty((p, n + 1)),
+    )  # fmt: skip
 
 
 @inline
@@ -233,14 +230,106 @@ def together(v: Floats, best: Floats, dv: Floats, out: Floats) -> None:
 
 
 @inline
-def begin(J: Floats, low: Floats, high: Floats, start: Floats, rows: int, work: Scratch) -> None:
-    """Begin least squares at the speeds nearest to ``start`` inside bounds, and add what they do to the rows."""
-    x, r = work.x, work.r
+def lost(bounds: Bounds, x: Floats, m: int, stopped: Floats, work: TickScratch) -> float:
+    """The square of the part of the error that is in no direction in which the joints can go: at limits only inward.
+
+    ``stopped`` (n,) gets 1 where such a limit is in the way.
+    """
+    descent, low, high = work.descent, work.low, work.high
     for j in range(x.shape[0]):
-        x[j] = min(max(start[j], low[j]), high[j])
-    for a in range(rows):
+        low[j] = x[j] if x[j] <= bounds.lower[j] + AT else -np.inf
+        high[j] = x[j] if x[j] >= bounds.upper[j] - AT else np.inf
+    for a in range(m):
+        descent.r[a] = work.error[a]
+    copy(x, descent.x)
+    step(Bounds(low, high, bounds.winds), m, FLOOR, descent)
+    left = 0.0
+    for a in range(m):
+        rest = work.error[a]
         for j in range(x.shape[0]):
-            r[a] += J[j, a] * x[j]
+            rest += descent.J[j, a] * (descent.x[j] - x[j])
+        left += rest * rest
+    for j in range(x.shape[0]):
+        stopped[j] = descent.held[j]
+    return left
+
+
+@inline
+def aim_behind(bounds: Bounds, x: Floats, m: int, most: Floats, dv: Floats, dt: float, work: TickScratch) -> None:
+    """Speeds that lead to where the targets were a tick ago, inside the limits, and stop there, into ``best`` (n,)."""
+    descent = work.descent
+    behind = 0.0
+    for a in range(m):
+        descent.r[a] = work.error[a] + work.lead[a]
+        behind += descent.r[a] * descent.r[a]
+    copy(x, descent.x)
+    step(bounds, m, FLOOR + LEVER * behind / (math.sqrt(behind) + SMALL), descent)
+    for j in range(x.shape[0]):
+        work.best[j] = descent.x[j] - x[j]
+    share = approach(work.best, most, dv, dt)
+    for j in range(x.shape[0]):
+        work.best[j] *= share
+
+
+@inline
+def add_lead(winds: Ints, m: int, most: Floats, wish: Floats, dt: float, work: TickScratch) -> None:
+    """Add the speeds that move the tips as the targets move, and else are those wished for, to ``best`` (n,)."""
+    descent, low, high = work.descent, work.low, work.high
+    for j in range(most.shape[0]):
+        low[j], high[j] = -np.inf, np.inf
+    damping = FLOOR
+    for _ in range(STIFFER):
+        for a in range(m):
+            descent.r[a] = -work.lead[a] / dt
+            for j in range(most.shape[0]):
+                descent.r[a] += descent.J[j, a] * wish[j]
+        copy(wish, descent.x)
+        step(Bounds(low, high, winds), m, damping, descent)
+        damping *= 4.0
+        if not beyond(descent.x, most):
+            break
+    for j in range(most.shape[0]):
+        work.best[j] += descent.x[j]
+
+
+@inline
+def settle(winds: Ints, m: int, near: Near, work: TickScratch) -> int:
+    """Of the speeds from ``low`` to ``high`` those that move the tips most like the best, into the descent's x (n,).
+
+    Begun at ``start``; bodies that would approach each other too fast get a row of their own. Returns how many do.
+    """
+    descent, best, low, high, gaps, last = work.descent, work.best, work.low, work.high, work.gaps, work.last
+    J, r, x = descent.J, descent.r, descent.x
+    n, p, active = x.shape[0], near.rows.shape[0], 0
+    for j in range(n):
+        x[j] = min(max(work.start[j], low[j]), high[j])
+    for i in range(p):
+        gaps[i, n] = 0.0
+    for _ in range(PASSES):
+        copy(x, last)
+        for a in range(m + active):
+            r[a] = 0.0
+            for j in range(n):
+                r[a] += J[j, a] * (x[j] - best[j] if a < m else x[j])
+        for i in range(p):
+            if gaps[i, n] > 0.0:
+                r[m + int(gaps[i, n]) - 1] += PUSH * near.rows[i, APPROACH]
+        step(Bounds(low, high, winds), m + active, YIELDING, descent)
+        known, change = active, 0.0
+        for j in range(n):
+            change = max(change, abs(x[j] - last[j]))
+        for i in range(p):
+            growth = near.rows[i, APPROACH]
+            for j in range(n):
+                growth += gaps[i, j] * x[j]
+            if gaps[i, n] == 0.0 and growth < -SLOW:
+                for j in range(n):
+                    J[j, m + active] = PUSH * gaps[i, j]
+                active += 1
+                gaps[i, n] = active
+        if active == known and change < SETTLED:
+            break
+    return active
 
 
 @inline
@@ -260,87 +349,23 @@ def aim_in(
     """``aim`` in room that was made for it."""
     chain = unpack(block)
     bounds, most, dv, wish = chain.bounds, motion[0], motion[1], motion[2]
-    descent, error, best, low, high, gaps = work.descent, work.error, work.best, work.low, work.high, work.gaps
-    J, r = descent.J, descent.r
-    n, m, p = x.shape[0], rows.shape[0], near.rows.shape[0]
-    if p > 0:
+    descent, m = work.descent, rows.shape[0]
+    if near.rows.shape[0] > 0:
         spread(block, x, near, work)
     led(before, goals, rows, work)
     square, _ = evaluate(chain.arm, goals, rows, x, descent, have_balls(goals))
     for a in range(m):
-        error[a] = r[a]
-    # Which part of the error no direction makes up that the joints can go, those at their limits only inward.
-    for j in range(n):
-        low[j] = x[j] if x[j] <= bounds.lower[j] + AT else -np.inf
-        high[j] = x[j] if x[j] >= bounds.upper[j] - AT else np.inf
-    copy(x, descent.x)
-    step(Bounds(low, high, bounds.winds), m, FLOOR, descent)
-    left = 0.0
-    for a in range(m):
-        rest = error[a]
-        for j in range(n):
-            rest += J[j, a] * (descent.x[j] - x[j])
-        left += rest * rest
-    for j in range(n):
-        out[STOPPED, j] = descent.held[j]
-    # The way to where the target was, inside the limits: the target's own speed comes on top.
-    forget_jumps(J, most, dt, work.lead)
-    behind = 0.0
-    for a in range(m):
-        error[a] += work.lead[a]
-        r[a] = error[a]
-        behind += error[a] * error[a]
-    damping = FLOOR + LEVER * behind / (math.sqrt(behind) + SMALL)
-    copy(x, descent.x)
-    step(bounds, m, damping, descent)
-    for j in range(n):
-        best[j] = descent.x[j] - x[j]
-    share = approach(best, most, dv, dt)
-    # The speeds that are best: those that move the tips as the targets move, and that share of the way.
-    for j in range(n):
-        low[j], high[j] = -np.inf, np.inf
-    damping = FLOOR
-    for _ in range(STIFFER):
-        for a in range(m):
-            r[a] = -work.lead[a] / dt
-        begin(J, low, high, wish, m, descent)
-        step(Bounds(low, high, bounds.winds), m, damping, descent)
-        damping *= 4.0
-        if not beyond(descent.x, most):
-            break
-    for j in range(n):
-        best[j] = descent.x[j] + share * best[j]
-    # As far towards them as all joints get together; from there on each by itself, as far as it is allowed.
-    together(v, best, dv, work.start)
-    allowed(bounds, x, v, most, dv, dt, low, high)
-    active = 0
-    for i in range(p):
-        gaps[i, n] = 0.0
-    for _ in range(ROUNDS):
-        for a in range(m):
-            r[a] = 0.0
-            for j in range(n):
-                r[a] -= J[j, a] * best[j]
-        for i in range(p):
-            if gaps[i, n] > 0.0:
-                r[m + int(gaps[i, n]) - 1] = PUSH * near.rows[i, APPROACH]
-        begin(J, low, high, work.start, m + active, descent)
-        step(Bounds(low, high, bounds.winds), m + active, YIELDING, descent)
-        known = active
-        for i in range(p):
-            growth = near.rows[i, APPROACH]
-            for j in range(n):
-                growth += gaps[i, j] * descent.x[j]
-            if gaps[i, n] == 0.0 and growth < -SLOW:
-                for j in range(n):
-                    J[j, m + active] = PUSH * gaps[i, j]
-                active += 1
-                gaps[i, n] = active
-        if active == known:
-            break
-    for j in range(n):
+        work.error[a] = descent.r[a]
+    left = lost(bounds, x, m, out[STOPPED], work)
+    forget_jumps(descent.J, most, dt, work.lead)
+    aim_behind(bounds, x, m, most, dv, dt, work)
+    add_lead(bounds.winds, m, most, wish, dt, work)
+    together(v, work.best, dv, work.start)
+    allowed(bounds, x, v, most, dv, dt, work.low, work.high)
+    active = settle(bounds.winds, m, near, work)
+    for j in range(x.shape[0]):
         out[SPEED, j] = descent.x[j]
-        out[BRAKED, j] = min(max(braked(v[j], dv[j]), low[j]), high[j])
+        out[BRAKED, j] = min(max(braked(v[j], dv[j]), work.low[j]), work.high[j])
     return left / square if square > 0.0 else 0.0, active
 
 

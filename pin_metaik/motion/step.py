@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
+from enum import StrEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.plain import fields_of
 
-class Following(Enum):
+
+class FollowerStatus(StrEnum):
     """Why a follower is where it is after a tick."""
 
-    ON_TARGET = "on target"
+    ON_TARGET = "ON_TARGET"
     """The targets are met, within their tolerances."""
-    UNDER_WAY = "under way"
+    UNDER_WAY = "UNDER_WAY"
     """It moves as fast as its limits let it; nothing else is in the way."""
-    AT_LIMITS = "at limits"
+    AT_LIMITS = "AT_LIMITS"
     """Joints stand at their limits, and the way on leads beyond: here the branch ends; see ``Follower.switch``."""
-    NO_DIRECTION = "no direction"
+    NO_DIRECTION = "NO_DIRECTION"
     """The joints cannot go where the target is, not even slowly: a singularity, or the edge of what the arm reaches."""
-    NEAR_COLLISION = "near collision"
+    NEAR_COLLISION = "NEAR_COLLISION"
     """It is slower than it would be, or stands, because bodies come near each other."""
 
 
@@ -40,7 +43,7 @@ class FollowerStep:
 
     q: NDArray[np.float64]
     v: NDArray[np.float64]
-    status: Following
+    status: FollowerStatus
     position_error: float
     orientation_error: float
     speed: float = 1.0
@@ -48,9 +51,13 @@ class FollowerStep:
 
     def __bool__(self) -> bool:
         """Whether it is on target."""
-        return self.status is Following.ON_TARGET
+        return self.status is FollowerStatus.ON_TARGET
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON: lengths in m, angles in rad, None for NaN."""
+        return fields_of(self, "q", "v", "status", "position_error", "orientation_error", "speed", "at_limits")
 
     @property
     def branch_ends(self) -> bool:
         """Whether this branch of solutions leads no farther: another one may."""
-        return self.status in (Following.AT_LIMITS, Following.NO_DIRECTION)
+        return self.status in (FollowerStatus.AT_LIMITS, FollowerStatus.NO_DIRECTION)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -53,31 +54,43 @@ def smooth(curve: JointCurve, limits: MotionLimits) -> SmoothProfile:
         InvalidSetting: A joint would leave its limits between the points if its second derivative were continuous.
     """
     need("timing a path with limited jerk", "timing", "ruckig")
-    from ruckig import InputParameter, Result, Ruckig, Trajectory
-
-    assert limits.jerk is not None
     if curve.bent:
         raise InvalidSetting(
             f"joint number {curve.bent[0]} would leave its limits on a smooth way between the poses: give more poses "
             "there, or no jerk"
         )
+    best = None
+    for u, b, j in _bounds(curve, limits):
+        trajectory = _moved(curve.length, SAFE * u, SAFE * b, SAFE * j)
+        if trajectory is not None and (best is None or trajectory.duration < best.duration):
+            best = trajectory
+    if best is None:
+        raise InvalidSetting("ruckig finds no way along this path within the limits")
+    return SmoothProfile(best)
+
+
+def _bounds(curve: JointCurve, limits: MotionLimits) -> Iterator[tuple[float, float, float]]:
+    """Limits u, b and j of the derivatives of s with which the joints keep theirs."""
+    assert limits.jerk is not None
     first, second, third = (np.maximum(curve.largest(order), 1e-12) for order in (1, 2, 3))
-    request = InputParameter(1)
-    request.target_position = [curve.length]
-    planner, best = Ruckig(1), None
     fastest = min((limits.velocity / first).min(), np.sqrt(limits.acceleration / second).min())
     for u in fastest * np.arange(1, TRIED + 1) / TRIED:
         most = ((limits.acceleration - second * u**2) / first).min()
         for b in most * np.arange(1, TRIED + 1) / TRIED:
             j = ((limits.jerk - third * u**3 - 3.0 * second * u * b) / first).min()
-            if b <= 0.0 or j <= 0.0:
-                continue
-            request.max_velocity, request.max_acceleration, request.max_jerk = [SAFE * u], [SAFE * b], [SAFE * j]
-            trajectory = Trajectory(1)
-            if planner.calculate(request, trajectory) == Result.Working and (
-                best is None or trajectory.duration < best.duration
-            ):
-                best = trajectory
-    if best is None:
-        raise InvalidSetting("ruckig finds no way along this path within the limits")
-    return SmoothProfile(best)
+            if b > 0.0 and j > 0.0:
+                yield float(u), float(b), float(j)
+
+
+def _moved(length: float, u: float, b: float, j: float) -> Any | None:
+    """The trajectory that ruckig has over a length from rest to rest; None, where its numbers do not do."""
+    from ruckig import InputParameter, Result, Ruckig, RuckigError, Trajectory
+
+    request, trajectory = InputParameter(1), Trajectory(1)
+    request.target_position = [length]
+    request.max_velocity, request.max_acceleration, request.max_jerk = [u], [b], [j]
+    try:
+        found = Ruckig(1).calculate(request, trajectory)
+    except RuckigError:
+        return None
+    return trajectory if found == Result.Working else None

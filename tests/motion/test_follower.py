@@ -148,7 +148,7 @@ def test_a_circle_through_the_wrists_singularity(ur5: mik.Chain, quarter: int, l
     assert missed.max() < least
     assert missed[1000:].max() < 1e-6
     if quarter == 0:
-        assert mik.Following.NO_DIRECTION in {step.status for step in steps}
+        assert mik.FollowerStatus.NO_DIRECTION in {step.status for step in steps}
 
 
 def test_a_target_that_jumps_is_reached_without_overshooting_by_much(panda: mik.Chain) -> None:
@@ -156,7 +156,7 @@ def test_a_target_that_jumps_is_reached_without_overshooting_by_much(panda: mik.
     start = panda.placements(watched.q)[0]
     target = moved(start, 0.0, 0.4, 0.0)
     steps = list(itertools.islice(iter(lambda: watched.step(target), None), 600))
-    assert steps[-1].status is mik.Following.ON_TARGET
+    assert steps[-1].status is mik.FollowerStatus.ON_TARGET
     assert not watched.v.round(6).any()
     sideways = [panda.placements(step.q)[0].translation[1] - start.translation[1] for step in steps]
     assert max(sideways) < 0.405
@@ -172,7 +172,7 @@ def test_at_the_edge_of_the_workspace_it_settles(panda: mik.Chain, beyond: float
     steps = [watched.step(target) for _ in range(2000)]
     late = np.array([step.v for step in steps[-300:]])
     assert np.abs(np.diff(late, axis=0)).max() * RATE < 0.5  # rad/s^2
-    assert steps[-1].status is mik.Following.NO_DIRECTION and steps[-1].branch_ends
+    assert steps[-1].status is mik.FollowerStatus.NO_DIRECTION and steps[-1].branch_ends
 
 
 def test_where_a_branch_ends_it_says_which_joints_and_leads_to_another(ur5: mik.Chain) -> None:
@@ -182,7 +182,7 @@ def test_where_a_branch_ends_it_says_which_joints_and_leads_to_another(ur5: mik.
     watched = Watched(chain, mik.MotionLimits.of(chain), q)
     steps = (watched.step(goal) for _ in range(3000))
     step = next(step for step in steps if step.branch_ends)
-    assert step.status is mik.Following.AT_LIMITS and step.branch_ends and not step
+    assert step.status is mik.FollowerStatus.AT_LIMITS and step.branch_ends and not step
     assert step.at_limits == ("shoulder_pan_joint",)
     while watched.v.any():
         watched.keep(watched.follower.stop(watched.q))
@@ -233,6 +233,7 @@ def test_the_same_calls_give_the_same_ticks(panda: mik.Chain) -> None:
     first, second = (Watched(panda, mik.MotionLimits.of(panda), home(panda)) for _ in range(2))
     for _ in range(50):
         assert_allclose(first.step(target).q, second.step(target).q, atol=0.0)
+    assert first.step(target).as_dict()["status"] == "UNDER_WAY"
     first.follower.reset()
     assert not first.follower.v.any()
 

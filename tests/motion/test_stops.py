@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 import pin_metaik as mik
 from pin_metaik import collision
+from pin_metaik.motion.levers import Levers
 from pin_metaik.motion.stops import Stopping, Stops
 
 RATE = 200.0
@@ -80,13 +81,27 @@ def test_at_a_wall_it_slides_along_and_says_what_holds_it() -> None:
     for _ in range(500):
         step = follower.step(target, q)
         q = step.q
-    assert step.status is mik.Following.NEAR_COLLISION
+    assert step.status is mik.FollowerStatus.NEAR_COLLISION
     assert_allclose(world.min_distance(q).distance, 0.02, atol=5e-3)
     assert chain.placements(q)[0].translation[1] > 0.15  # along the wall it has gone all the same
     for _ in range(500):
         step = follower.step(start, q)
         q = step.q
-    assert step.status is mik.Following.ON_TARGET
+    assert step.status is mik.FollowerStatus.ON_TARGET
+
+
+def test_what_it_holds_is_kept_clear_as_well() -> None:
+    chain, world = walled(0.45)
+    world.attach("stick", collision.Box((0.02, 0.02, 0.3)), "panda_hand_tcp", np.array([0.0, 0.0, 0.15]))
+    follower, q = mik.Follower(chain, RATE, mik.MotionLimits.of(chain, acceleration=HARD), world), HOME
+    pose = chain.placements(q)[0]
+    forward = pin.SE3(pin.exp3(np.array([0.0, -np.pi / 2, 0.0])) @ pose.rotation, pose.translation)
+    for _ in range(300):  # the stick, which hangs down, is to point through the wall
+        step = follower.step(moved(forward, 0.2, 0.0, 0.0), q)
+        q = step.q
+        assert not world.in_collision(q)
+    assert step.status is mik.FollowerStatus.NEAR_COLLISION
+    assert world.min_distance(q).distance < 0.02
 
 
 def test_an_obstacle_that_comes_near_pushes_it_away() -> None:
@@ -142,19 +157,25 @@ def test_no_body_moves_farther_than_its_levers_allow(name: str) -> None:
     robot = sliding() if name == "sliding" else mik.load_robot(name)
     chain = mik.Chain(robot, "l4" if name == "sliding" else robot.frame)
     world = mik.CollisionWorld(robot)
-    stops, rng = Stops(chain, world, 0.01), np.random.default_rng(0)
-    checker = stops.checker
-    box = chain.limits.box()
+    levers, solids, rng = Levers(chain, world.checker), world.checker.solids, np.random.default_rng(0)
+    bodies, own = solids.moving, world.checker.asked.own
     for _ in range(20):
-        x, y = box.sample(rng, 2)
-        y = x + rng.choice([1.0, 0.01]) * (y - x)
-        bodies = checker.solids.moving
-        corners = [body.solid.box[:3] + rng.uniform(-1, 1, (4, 3)) * body.solid.box[3:6] for body in bodies]
-        rows = [checker.solids.place(chain.q(at)).poses[: len(bodies)].copy() for at in (x, y)]
-        for i, points in enumerate(corners):
-            before, after = (points @ row[i][:9].reshape(3, 3) + row[i][9:] for row in rows)
-            far = np.linalg.norm(after - before, axis=1).max()
-            assert far <= stops._against[i] @ np.abs(y - x) + 1e-9
+        x, y = chain.limits.box().sample(rng, 2)
+        y = x + rng.choice([1.0, 0.1, 0.001]) * (y - x)
+        way = levers.way(np.abs(y - x))
+        points = [body.solid.box[:3] + rng.uniform(-1, 1, (4, 3)) * body.solid.box[3:6] for body in bodies]
+        rows = [solids.place(chain.q(at)).poses[: len(bodies)].copy() for at in (x, y)]
+        before, after = (
+            [p @ row[:9].reshape(3, 3) + row[9:] for p, row in zip(points, one, strict=True)] for one in rows
+        )
+        nearer = levers.near(chain.q(x), way)
+        for bound in (levers.everywhere, nearer):
+            for i in range(len(bodies)):
+                assert np.linalg.norm(after[i] - before[i], axis=1).max() <= bound.against[i] @ way + 1e-9
+            for k, (i, j) in enumerate(own):
+                gaps = (np.linalg.norm(now[i][:, None] - now[j][None], axis=2) for now in (before, after))
+                assert np.abs(np.subtract(*gaps)).max() <= bound.own[k] @ way + 1e-9
+        assert (nearer.own <= levers.everywhere.own + 1e-12).all()
 
 
 def test_a_distance_that_is_remembered_is_never_larger_than_the_one_there_is() -> None:
