@@ -21,6 +21,7 @@ from pin_metaik.cli.mobile.common import (
     Json,
     Rng,
     Start,
+    can_write,
     fitness_with,
     planner_with,
     print_report,
@@ -31,11 +32,10 @@ from pin_metaik.cli.progress import progress_bar
 from pin_metaik.compare.planners.report import sections
 from pin_metaik.compare.planners.run import compare_planners
 from pin_metaik.compare.report.show import show
-from pin_metaik.compare.report.write import need_figures, write
+from pin_metaik.compare.report.write import write
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import kept
 from pin_metaik.optimize import Budget
-from pin_metaik.output import writable
 
 WIDE = 150  # columns for files and pipes, which have no width
 USUAL = ("exact", "astar", "rrt", "rrtstar", "prm", "ga", "pso")
@@ -80,10 +80,7 @@ def compare(
     """
     from pin_metaik import mobile
 
-    if out is not None:
-        writable(out, folder=True)
-        if figures:
-            need_figures()
+    can_write(out, figures)
     names = split(methods or USUAL)
     own = _of_each(settings or (), names)
     chosen = {name: planner_with(name, own[name]) for name in names}

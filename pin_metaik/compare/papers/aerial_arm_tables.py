@@ -20,7 +20,7 @@ from pin_metaik.compare.papers.aerial_arm_setup import (
 )
 from pin_metaik.compare.papers.arm import Trial, of
 from pin_metaik.compare.papers.arm_report import SUMMARY, median_seconds, summary
-from pin_metaik.compare.papers.plots import Runs
+from pin_metaik.compare.plots import Runs
 from pin_metaik.compare.report import Column, Table
 
 

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from pin_metaik.arrays import Array
-from pin_metaik.compare.papers import plots
+from pin_metaik.compare import plots
 from pin_metaik.compare.papers.arm import Trial, of
 from pin_metaik.compare.report import Column, Figure, Table, Value
 

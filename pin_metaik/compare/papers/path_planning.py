@@ -7,7 +7,7 @@ from functools import partial
 from statistics import median
 from typing import Any
 
-from pin_metaik.compare.papers import plots
+from pin_metaik.compare import plots
 from pin_metaik.compare.papers.claims import claims_table
 from pin_metaik.compare.papers.paper import Job, Options, Paper
 from pin_metaik.compare.papers.path_planning_claims import claims, of

@@ -19,7 +19,6 @@ from pin_metaik.compare.papers.arm_report import (
     summary,
 )
 from pin_metaik.compare.papers.paper import Job, Options, Paper
-from pin_metaik.compare.papers.plots import Runs
 from pin_metaik.compare.papers.rv7fl_setup import (
     EQUAL,
     LONG,
@@ -32,6 +31,7 @@ from pin_metaik.compare.papers.rv7fl_setup import (
     Printed,
     cases,
 )
+from pin_metaik.compare.plots import Runs
 from pin_metaik.compare.report import Column, Section, Table
 
 ROUNDING = 1e-9  # mm; smaller differences do not count

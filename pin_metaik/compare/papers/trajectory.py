@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from pin_metaik.compare.papers import plots
+from pin_metaik.compare import plots
 from pin_metaik.compare.papers.claims import claims_table
 from pin_metaik.compare.papers.paper import Job, Options, Paper
 from pin_metaik.compare.papers.trajectory_claims import claims, middle, of, plan_remarks, remarks
