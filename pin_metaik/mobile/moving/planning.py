@@ -188,7 +188,7 @@ def _traced(
         state, departure = before[state]
         times.append(departure)
         nodes.append(state[0])
-        if arrival[state] < departure:
+        if departure - arrival[state] > SHORT * max(1.0, abs(departure)):  # less is rounding
             times.append(arrival[state])
             nodes.append(state[0])
     return np.array(times[::-1]), nodes[::-1]
