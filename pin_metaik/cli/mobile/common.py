@@ -33,7 +33,6 @@ Pose: TypeAlias = tuple[float, float, float]
 SceneName = Annotated[
     str,
     typer.Argument(
-        metavar="SCENE",
         help="A scene (.json), polygons (.geojson, .wkt), an occupancy grid (.npy), a ROS map (.yaml), the name "
         "of a scene that comes with the package, or random:SEED, random:SEED:OBSTACLES or "
         "random:SEED:OBSTACLES:CONCAVE, with the share of concave ones.",

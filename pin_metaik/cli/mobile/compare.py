@@ -42,7 +42,7 @@ USUAL = ("exact", "astar", "rrt", "rrtstar", "prm", "ga", "pso")
 
 
 def compare(
-    scenes: Annotated[list[str], typer.Argument(metavar="SCENE...", help="As `plan` takes them, one or several.")],
+    scenes: Annotated[list[str], typer.Argument(metavar="SCENE", help="As `plan` takes them, one or several.")],
     methods: Annotated[
         list[str] | None,
         typer.Option(help=f"As `plan --method` takes them, with commas, or repeated; default: {', '.join(USUAL)}."),
@@ -76,7 +76,7 @@ def compare(
 ) -> None:
     """Compare path planners on the same scenes with the gap to the shortest path. Ctrl-C keeps what is done.
 
-    Run k of a planner is what `plan --rng K` gives, with K the seed and k.
+    Run 0 of a planner is what `plan` gives with the same --rng, run 1 with one more, and so on.
     """
     from pin_metaik import mobile
 
