@@ -20,8 +20,8 @@ from pin_metaik.compare.papers.aerial_arm_setup import (
 )
 from pin_metaik.compare.papers.arm import Trial, of
 from pin_metaik.compare.papers.arm_report import SUMMARY, median_seconds, summary
-from pin_metaik.compare.plots import Runs
 from pin_metaik.compare.report import Column, Table
+from pin_metaik.compare.report.plots import Runs
 
 
 def table_3(name: str, trials: Sequence[Trial], numbers: Iterable[int], reading: Reading) -> Table:

@@ -9,9 +9,8 @@ from typing import Any, Literal
 import numpy as np
 
 from pin_metaik.arrays import Array
-from pin_metaik.compare import plots
 from pin_metaik.compare.papers.arm import Trial, of
-from pin_metaik.compare.report import Column, Figure, Table, Value
+from pin_metaik.compare.report import Column, Figure, Table, Value, plots
 
 SUMMARY = (Column("best", ".3g"), Column("median", ".3g"), Column("worst", ".3g"), Column("runs"))
 

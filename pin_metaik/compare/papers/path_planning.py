@@ -7,7 +7,6 @@ from functools import partial
 from statistics import median
 from typing import Any
 
-from pin_metaik.compare import plots
 from pin_metaik.compare.papers.claims import claims_table
 from pin_metaik.compare.papers.paper import Job, Options, Paper
 from pin_metaik.compare.papers.path_planning_claims import claims, of
@@ -25,7 +24,7 @@ from pin_metaik.compare.papers.path_planning_setup import (
     warm_up,
 )
 from pin_metaik.compare.planners.figures import Overlaid, overlay, times
-from pin_metaik.compare.report import Column, Figure, Section, Table, Value
+from pin_metaik.compare.report import Column, Figure, Section, Table, Value, plots
 
 C_P = 120.0  # all scenes are 10 x 10
 FITNESSES = ("paper", "exact")

@@ -21,8 +21,8 @@ from pin_metaik.compare.papers.arm_report import (
     summary,
 )
 from pin_metaik.compare.papers.paper import Job, Options, Paper
-from pin_metaik.compare.plots import Runs
 from pin_metaik.compare.report import Column, Section, Table
+from pin_metaik.compare.report.plots import Runs
 from pin_metaik.ik import IKProblem, Target
 from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Metaheuristic

@@ -31,8 +31,8 @@ from pin_metaik.compare.papers.rv7fl_setup import (
     Printed,
     cases,
 )
-from pin_metaik.compare.plots import Runs
 from pin_metaik.compare.report import Column, Section, Table
+from pin_metaik.compare.report.plots import Runs
 
 ROUNDING = 1e-9  # mm; smaller differences do not count
 

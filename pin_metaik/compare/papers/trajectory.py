@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from pin_metaik.compare import plots
 from pin_metaik.compare.papers.claims import claims_table
 from pin_metaik.compare.papers.paper import Job, Options, Paper
 from pin_metaik.compare.papers.trajectory_claims import claims, middle, of, plan_remarks, remarks
@@ -26,7 +25,7 @@ from pin_metaik.compare.papers.trajectory_setup import (
     SpeedTrial,
     routes,
 )
-from pin_metaik.compare.report import Column, Figure, Section, Table, Value
+from pin_metaik.compare.report import Column, Figure, Section, Table, Value, plots
 
 COST = {"lm": 4.0, "bfgs": 1.5, "rprop": 1.0, "scg": 3.0}  # of a training, roughly
 

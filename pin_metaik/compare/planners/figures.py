@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from pin_metaik.arrays import Array
-from pin_metaik.compare.plots import colours_of
+from pin_metaik.compare.report.plots import colours_of
 
 if TYPE_CHECKING:  # shapely is an extra
     from pin_metaik.mobile import PathProblem

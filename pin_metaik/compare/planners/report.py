@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 
 from pin_metaik.arrays import Array
-from pin_metaik.compare import plots
 from pin_metaik.compare.planners.figures import Overlaid, overlay, shape_of, times
 from pin_metaik.compare.planners.run import PlannerComparison, PlannerRun
-from pin_metaik.compare.report import Column, Figure, Section, Table, Value
+from pin_metaik.compare.report import Column, Figure, Section, Table, Value, plots
 
 PANEL = 3.4  # inches
 
