@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import json
-import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from pin_metaik import cli, mobile
+from pin_metaik import mobile
+from tests.cli.calls import Call, caller
 
-Call = Callable[..., tuple[int, str, str]]
 MOVING = [{"way": [[0, 5, 0], [12, 5, 10]], "radius": 0.6}]
 
 
@@ -23,15 +21,7 @@ def call(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
     monkeypatch.chdir(tmp_path)
     Path("moving.json").write_text(json.dumps(MOVING))
 
-    def called(*words: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["pin-metaik", *map(str, words)])
-        capsys.readouterr()
-        with pytest.raises(SystemExit) as stop:
-            cli.run()
-        printed = capsys.readouterr()
-        return int(stop.value.code or 0), printed.out, printed.err
-
-    return called
+    return caller(monkeypatch, capsys)
 
 
 def test_a_scene_is_shown_drawn_and_written_before_planning(call: Call) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from numpy.testing import assert_allclose
 
-from pin_metaik import cli
+from tests.cli.calls import caller
 
 READY = "from pin_metaik.cli import run; print('ready', flush=True); run()"
 POSE = ("--position", "0.3", "0.3", "0.4")
@@ -34,16 +34,7 @@ def call(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
     Path("lost.urdf").write_text(TWO_LINKS.format(mesh="no.stl"))
     Path("scene.json").write_text('{"obstacles": []}')
 
-    def called(*words: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["pin-metaik", *map(str, words)])
-        capsys.readouterr()
-        with pytest.raises(SystemExit) as stop:
-            cli.run()
-        printed = capsys.readouterr()
-        code = stop.value.code
-        return (0 if code is None else int(code)), printed.out, printed.err
-
-    return called
+    return caller(monkeypatch, capsys)
 
 
 NONSENSE: list[tuple[tuple[object, ...], str]] = [

@@ -76,6 +76,17 @@ def test_a_watch_and_control_c_keep_what_is_done() -> None:
     assert len(stop.value.result.runs) == 2
 
 
+def test_control_c_before_the_first_run_carries_a_comparison_without_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    def pressed(*_: object, **__: object) -> None:
+        raise Interrupted("a plan")
+
+    monkeypatch.setattr(mobile, "plan_path", pressed)
+    with pytest.raises(Interrupted) as stop:
+        compare.compare_planners(SCENES, ["rrt"], 5, budget=FEW)
+    assert stop.value.result.runs == ()
+    assert comparison_table(stop.value.result).rows == []
+
+
 def test_what_cannot_be_compared_is_told() -> None:
     with pytest.raises(UnknownName, match="rrtstar"):
         compare.compare_planners(SCENES, ["rrtstr"], 1)

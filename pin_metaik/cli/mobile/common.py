@@ -14,7 +14,9 @@ from rich.console import Console
 
 from pin_metaik.cli.settings import values_of, with_values
 from pin_metaik.cli.versions import versions
+from pin_metaik.compare.report.write import need_figures
 from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.output import writable
 
 if TYPE_CHECKING:  # shapely is an extra, and none of the other commands should wait for it
     from pin_metaik.mobile import Fitness, PathPlanner, Scene, State
@@ -31,7 +33,6 @@ Pose: TypeAlias = tuple[float, float, float]
 SceneName = Annotated[
     str,
     typer.Argument(
-        metavar="SCENE",
         help="A scene (.json), polygons (.geojson, .wkt), an occupancy grid (.npy), a ROS map (.yaml), the name "
         "of a scene that comes with the package, or random:SEED, random:SEED:OBSTACLES or "
         "random:SEED:OBSTACLES:CONCAVE, with the share of concave ones.",
@@ -156,6 +157,18 @@ def state_of(numbers: tuple[float, ...]) -> State:
 
     x, y, heading, v, *turning = numbers
     return mobile.State(x, y, radians(heading), v, *(radians(rate) for rate in turning))
+
+
+def can_write(out: Path | None, figures: bool, ros: Path | None = None) -> None:
+    """Look whether a folder, its figures and a file for ROS can be written, before the work that they are for."""
+    if out is not None:
+        writable(out, folder=True)
+        if figures:
+            need_figures()
+    if ros is not None:
+        from pin_metaik.mobile.ros import ros_file
+
+        ros_file(ros)
 
 
 def print_report(report: Mapping[str, Any]) -> None:

@@ -20,6 +20,7 @@ from pin_metaik.cli.mobile.common import (
     Json,
     Rng,
     Start,
+    can_write,
     fitness_with,
     planner_with,
     print_report,
@@ -31,18 +32,17 @@ from pin_metaik.cli.progress import progress_bar
 from pin_metaik.compare.planners.report import sections
 from pin_metaik.compare.planners.run import compare_planners
 from pin_metaik.compare.report.show import show
-from pin_metaik.compare.report.write import need_figures, write
+from pin_metaik.compare.report.write import write
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import kept
 from pin_metaik.optimize import Budget
-from pin_metaik.output import writable
 
 WIDE = 150  # columns for files and pipes, which have no width
 USUAL = ("exact", "astar", "rrt", "rrtstar", "prm", "ga", "pso")
 
 
 def compare(
-    scenes: Annotated[list[str], typer.Argument(metavar="SCENE...", help="As `plan` takes them, one or several.")],
+    scenes: Annotated[list[str], typer.Argument(metavar="SCENE", help="As `plan` takes them, one or several.")],
     methods: Annotated[
         list[str] | None,
         typer.Option(help=f"As `plan --method` takes them, with commas, or repeated; default: {', '.join(USUAL)}."),
@@ -76,14 +76,11 @@ def compare(
 ) -> None:
     """Compare path planners on the same scenes with the gap to the shortest path. Ctrl-C keeps what is done.
 
-    Run k of a planner is what `plan --rng K` gives, with K the seed and k.
+    Run 0 of a planner is what `plan` gives with the same --rng, run 1 with one more, and so on.
     """
     from pin_metaik import mobile
 
-    if out is not None:
-        writable(out, folder=True)
-        if figures:
-            need_figures()
+    can_write(out, figures)
     names = split(methods or USUAL)
     own = _of_each(settings or (), names)
     chosen = {name: planner_with(name, own[name]) for name in names}

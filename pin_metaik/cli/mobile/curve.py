@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def curve(
     turning_radius: Annotated[float, typer.Option(help="Least radius that the vehicle can turn with, m.")],
-    scene: Annotated[str | None, typer.Argument(metavar="[SCENE]", help="Obstacles; default: the open plane.")] = None,
+    scene: Annotated[str | None, typer.Argument(help="Obstacles; default: the open plane.")] = None,
     start: Annotated[
         Pose | None,
         typer.Option("--from", metavar="X Y HEADING", help="m and degrees; default: the scene's, any heading."),

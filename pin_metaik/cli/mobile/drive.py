@@ -16,14 +16,13 @@ from pin_metaik.cli.mobile.common import (
     Json,
     SceneName,
     VehicleName,
+    can_write,
     print_report,
     read_scene,
     say_written,
     state_of,
 )
-from pin_metaik.compare.report.write import need_figures
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.output import writable
 
 if TYPE_CHECKING:
     from pin_metaik.mobile import Scene, State
@@ -68,7 +67,6 @@ def drive(
     """
     from pin_metaik import mobile
     from pin_metaik.mobile import plots
-    from pin_metaik.mobile.ros import ros_file
 
     if (after is None) != (at is None):
         raise InvalidSetting("--after and --at go together: which trajectory, and when")
@@ -76,12 +74,7 @@ def drive(
         raise InvalidSetting("--from or --after, one of the two: both say where it begins")
     if to is not None and goal is not None:
         raise InvalidSetting("--to or --goal, one of the two: both say where it ends")
-    if out is not None:
-        writable(out, folder=True)
-        if figures:
-            need_figures()
-    if ros is not None:
-        ros_file(ros)
+    can_write(out, figures, ros)
     robot = mobile.load_vehicle(vehicle)
     if after is not None and at is not None:
         given: State | None = mobile.load_trajectory(after).state(at)

@@ -59,12 +59,7 @@ def evolve(
     if method not in ALGORITHMS:
         raise InvalidSetting(f"{method} has no generations: --method is one of {', '.join(ALGORITHMS)}")
     problem = mobile.PathProblem.of(read_scene(scene, start, goal, radius), radius)
-    seen: list[tuple[int, Population]] = []
-
-    def watch(at: Progress) -> None:
-        if at.population is not None:
-            seen.append((int(at.done), at.population))
-
+    steps_seen = Steps(steps, evaluations)
     plan = kept(
         lambda: mobile.plan_path(
             problem,
@@ -73,16 +68,37 @@ def evolve(
             via=via,
             budget=Budget(evaluations=evaluations),
             rng=rng,
-            watch=watch,
+            watch=steps_seen,
         )
     )
-    last = len(seen) - 1
-    chosen = sorted({round(last * (k / (steps - 1)) ** 2) for k in range(steps)})  # the first ones change most
-    titles = {f"generation {k + 1}, {seen[k][0]:,} paths": seen[k][1] for k in chosen}
-    _draw(output, problem, titles)
+    _draw(output, problem, steps_seen.by_title)
     Console(highlight=False).print(str(plan), style="green" if plan else "yellow", soft_wrap=True)
     say_written([output], as_json=False)
     raise typer.Exit(INTERRUPTED if plan.interrupted else 0 if plan else 1)
+
+
+class Steps:
+    """A watch that keeps some generations of a search, from the first to the last, most of them early."""
+
+    def __init__(self, count: int, evaluations: int) -> None:
+        self._marks = [evaluations * (k / (count - 1)) ** 2 for k in range(count)]  # the first ones change most
+        self._kept: list[tuple[str, Population]] = []
+        self._last: tuple[str, Population] | None = None
+        self._generations = 0
+
+    def __call__(self, at: Progress) -> None:
+        """Keep a generation if it is its turn."""
+        if at.population is None:
+            return
+        self._generations += 1
+        self._last = f"generation {self._generations:,}, {int(at.done):,} paths", at.population
+        if len(self._kept) < len(self._marks) and at.done >= self._marks[len(self._kept)]:
+            self._kept.append(self._last)
+
+    @property
+    def by_title(self) -> dict[str, Population]:
+        """What was kept, and the last."""
+        return dict(self._kept if self._last is None else [*self._kept, self._last])
 
 
 def _draw(output: Path, problem: Any, generations: dict[str, Population]) -> None:

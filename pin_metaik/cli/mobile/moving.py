@@ -26,10 +26,9 @@ from pin_metaik.output import writable
 
 def moving(
     scene: SceneName,
-    obstacles: Annotated[
+    moving_obstacles: Annotated[
         Path,
         typer.Argument(
-            metavar="MOVING",
             help='A .json: a list of {"way": [[time, x, y], ...], "radius": r} or, for a convex polygon around its '
             'origin, {"way": ..., "outline": [[x, y], ...]}; s and m.',
         ),
@@ -61,7 +60,7 @@ def moving(
         picture_file(picture)
     if output is not None:
         writable(output)
-    movers = mobile.load_moving(obstacles)
+    movers = mobile.load_moving(moving_obstacles)
     world = read_scene(scene, start, goal, radius + margin)
     problem = mobile.PathProblem.of(world, radius, margin, join)  # type: ignore[arg-type]  # it checks the join itself
     with progress_bar("windows opened") as watch:

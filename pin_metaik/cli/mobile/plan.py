@@ -29,6 +29,7 @@ from pin_metaik.cli.mobile.common import (
     Threshold,
     Unknown,
     VehicleName,
+    can_write,
     fitness_with,
     planner_with,
     print_report,
@@ -37,11 +38,9 @@ from pin_metaik.cli.mobile.common import (
     warm_up,
 )
 from pin_metaik.cli.progress import progress_bar
-from pin_metaik.compare.report.write import need_figures
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import kept
 from pin_metaik.optimize import ALGORITHMS, Budget
-from pin_metaik.output import writable
 
 if TYPE_CHECKING:  # shapely is an extra, and none of the other commands should wait for it
     from pin_metaik.mobile import LearnedTurn, PathPlan, TrajectoryPlan, Vehicle
@@ -98,14 +97,8 @@ def plan(
     Exit code 0: planned, 1: what was found collides, or nothing was, 2: the call makes no sense, 130: interrupted.
     """
     from pin_metaik import mobile
-    from pin_metaik.mobile.ros import ros_file
 
-    if out is not None:
-        writable(out, folder=True)
-        if figures:
-            need_figures()
-    if ros is not None:
-        ros_file(ros)
+    can_write(out, figures, ros)
     if trajectory is not None and trajectory not in TRAJECTORIES:
         raise InvalidSetting(f"no trajectory {trajectory!r}; known: {', '.join(TRAJECTORIES)}")
     if paths > 1 and method != "exact":

@@ -130,14 +130,14 @@ def compare_planners(
 
     for problem in named.values():
         problem.optimum  # noqa: B018  # raises where there is no way; every run is measured by it
-    for name in chosen:
-        one(next(iter(named.values())), name, rng, WARM)  # what is compiled and imported once is in no run's time
     done: list[PlannerRun] = []
 
     def comparison() -> PlannerComparison:
         return PlannerComparison(named, tuple(chosen), tuple(done), len(jobs))
 
     try:
+        for name in chosen:
+            one(next(iter(named.values())), name, rng, WARM)  # what is compiled and imported once is in no run's time
         for scene, name, run in jobs:
             tell(watch, Progress(len(done), len(jobs), label=f"{scene}, {name}"))
             began = process_time()

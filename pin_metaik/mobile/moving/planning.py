@@ -171,9 +171,11 @@ class _Search:
 
     def _window_at(self, node: int, there: float) -> int | None:
         """The window of a place that a time is in; as the line was free until then, there is one but for rounding."""
-        slack = SHORT * max(1.0, abs(there))
-        windows = self.windows(node)
-        return next((k for k, (low, high) in enumerate(windows) if low - slack <= there <= high + slack), None)
+        for slack in (0.0, SHORT * max(1.0, abs(there))):
+            for k, (low, high) in enumerate(self.windows(node)):
+                if low - slack <= there <= high + slack:
+                    return k
+        return None
 
     def none(self, why: str) -> NoTimedPath:
         """What to raise where there is nothing to return."""
@@ -190,7 +192,7 @@ def _traced(
         state, departure = before[state]
         times.append(departure)
         nodes.append(state[0])
-        if arrival[state] < departure:
+        if departure - arrival[state] > SHORT * max(1.0, abs(departure)):  # less is rounding
             times.append(arrival[state])
             nodes.append(state[0])
     return np.array(times[::-1]), nodes[::-1]

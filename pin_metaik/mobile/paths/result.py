@@ -12,6 +12,8 @@ from pin_metaik.arrays import Array
 from pin_metaik.mobile.paths.path import Path
 from pin_metaik.mobile.paths.problem import PathProblem
 
+SAME = 1e-9  # of the length; a cost that differs less is the length
+
 
 class PathStatus(StrEnum):
     """Why a search for a path ended; all but the last two are successes."""
@@ -127,6 +129,8 @@ class PathPlan:
             said.append(f"{self.problem.space.join} joins")
         if self.gap is not None and self.status is PathStatus.FREE:
             far = f", {100 * self.gap:.2f} % above the optimum"
+        if np.isfinite(self.cost) and abs(self.cost - self.length) > SAME * self.length:
+            far += f", cost {self.cost:.6g}"
         if self.status is PathStatus.NOT_FOUND:
             return f"{self.status}: no path ({', '.join(said)}, {1e3 * self.seconds:.0f} ms)"
         return f"{self.status}: length {self.length:.6g}{far} ({', '.join(said)}, {1e3 * self.seconds:.0f} ms)"
