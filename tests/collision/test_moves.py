@@ -189,6 +189,20 @@ def test_what_is_held_counts_on_the_way() -> None:
     assert world.clear_between(np.zeros(3), [1.0, 0.0, 0.0])
 
 
+def test_many_bodies_beside_many_others_are_decided() -> None:
+    for spare, free in ((1e-4, True), (-1e-4, False)):
+        builder = Builder()
+        for side in (0.0, 0.04 + spare):  # two combs of ten balls that slide past each other
+            carrier = builder.add(pin.JointModelPX(), coal.Sphere(0.02), (0.0, side, 0.0))
+            frame = builder.model.getFrameId(f"b{carrier}")
+            for k in range(1, 10):
+                at = pin.SE3(np.eye(3), np.array([0.04 * k, 0.0, 0.0]))
+                ball = pin.GeometryObject(f"{carrier} {k}", carrier, frame, at, coal.Sphere(0.02))
+                builder.geometry.addGeometryObject(ball)
+        world = builder.world()
+        assert world.clear_between([0.0, 1.0], [1.0, 0.0], resolution=1e-5) is free
+
+
 JOINTS = {
     "free": pin.JointModelFreeFlyer(),
     "ball": pin.JointModelSpherical(),
