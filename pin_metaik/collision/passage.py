@@ -197,8 +197,8 @@ class _Passage:
         checker = self._checker
         margin = checker.margin_of(i, j, own)
         a, b, c, d = checker.levels_of(i, j, own)
-        levels, solid = checker.solids.levels, a.mesh is None and b.mesh is None
-        hulls = (a, b) if solid else (levels[i].hull, levels[j].hull)
+        levels = checker.solids.levels
+        hulls = levels[i].hull if a.mesh else a, levels[j].hull if b.mesh else b
         room = INEXACT * placed.distance(*hulls) - margin - ENCLOSED
         if room > USEFUL * reach:
             return min(room / reach, 1.0)

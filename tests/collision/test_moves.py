@@ -308,6 +308,18 @@ def test_moves_among_obstacles_agree_with_samples_of_the_original_geometry(name:
     assert MoveStatus.TOUCHES in {move.status for move in moves}
 
 
+@pytest.mark.parametrize("simplify", ["convex", "capsule"])
+def test_where_simplified_solids_decide_what_is_free_is_free_of_these(simplify: str) -> None:
+    world = mik.CollisionWorld(robot_of("panda"), around_an_arm(), simplify=simplify, exact=False)
+    Q = configurations("panda", 60, seed=6)
+    Q = Q[~world.in_collision_batch(Q)]
+    moves = world.first_contact_batch(Q[:12], Q[12:24])
+    for move in moves:
+        before = min(move.clear, 1.0) * (1.0 - 1e-9)
+        assert not any(world.in_collision(move.at(fraction)) for fraction in np.linspace(0.0, before, 200))
+    assert MoveStatus.TOUCHES in {move.status for move in moves}
+
+
 def test_every_kind_of_obstacle_stops_a_move_and_a_concave_link_too() -> None:
     cloud = np.array([[0.3, y, 0.0] for y in np.linspace(-0.2, 0.2, 40)])
     for obstacle in (
