@@ -538,6 +538,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.Chain.at": lambda: {"q": X6},
     "mik.Chain.q": lambda: {"x": X6, "q0": np.zeros(6)},
     "mik.Chain.x": lambda: {"q": X6},
+    "mik.Chain.unwrapped": lambda: {"Q": np.zeros((2, 6))},
     "mik.Chain.configuration": lambda: {"q": X6},
     "mik.Chain.tangent": lambda: {"x": np.array(X6)},
     "mik.Chain.keeps_limits": lambda: {"q": np.array(X6)},

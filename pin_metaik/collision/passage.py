@@ -22,7 +22,7 @@ from pin_metaik.collision.screws import Screws
 from pin_metaik.collision.solids import Placed
 
 INEXACT = 1.0 - 1e-6  # of a distance, what coal's may be off by
-MANY = 12  # pairs with boxes near each other in a part: then it is cut in two without a look at their distances
+MANY, FAR = 12, 0.05  # pairs with boxes near each other that may move so far, m: then a part is cut in two at once
 USEFUL = 0.25  # of what a pair can move: a distance of hulls below that is not relied on, meshes are asked
 GRID = 4  # steps of the distances that meshes are asked about, for each doubling: coal's requests are kept
 
@@ -174,7 +174,7 @@ class _Passage:
         placed = self._checker.solids.place(self._at(middle))
         near = self._near(placed, half)
         reaches = [self._reaches[own] if own >= 0 else self._moved[i, 0] for i, _, own in near]
-        if len(near) > MANY:
+        if len(near) > MANY and max(reaches) > FAR:
             return _Look(self._checker.collides_placed(placed), 0.0, max(reaches))
         free, span = 1.0, 0.0
         for (i, j, own), reach in zip(near, reaches, strict=True):
@@ -192,21 +192,23 @@ class _Passage:
 
     def _share(self, placed: Placed, i: int, j: int, own: int, reach: float) -> float:
         """The share of half of a part in which two bodies are proved free, at most 1; below 0 they may collide."""
+        if reach == 0.0:
+            return 1.0  # as they are at the start of the move, where nothing collides
         checker = self._checker
         margin = checker.margin_of(i, j, own)
         a, b, c, d = checker.levels_of(i, j, own)
-        levels, solid = checker.solids.levels, a.mesh is None and b.mesh is None
-        hulls = (a, b) if solid else (levels[i].hull, levels[j].hull)
+        levels = checker.solids.levels
+        hulls = levels[i].hull if a.mesh else a, levels[j].hull if b.mesh else b
         room = INEXACT * placed.distance(*hulls) - margin - ENCLOSED
-        if room >= reach or room > USEFUL * reach:
-            return min(room / reach, 1.0) if reach > 0.0 else 1.0
+        if room > USEFUL * reach:
+            return min(room / reach, 1.0)
         fine = (c, d) if checker.exact else (a, b)
         finer = fine[0] is not hulls[0] or fine[1] is not hulls[1]
         if finer and not placed.overlap(*fine, margin + _rounded_up(reach)):
             return 1.0
         if checker.collide(placed, i, j, own):
             return -1.0
-        return max(room / reach, 0.0) if reach > 0.0 else 0.0
+        return max(room / reach, 0.0)
 
     def _at(self, fraction: float) -> NDArray[np.float64]:
         q: NDArray[np.float64] = pin.integrate(self._checker.solids.model, self._q0, fraction * self._way)

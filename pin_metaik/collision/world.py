@@ -365,9 +365,9 @@ class CollisionWorld:
         Args:
             q0: Where the move starts.
             q1: Where it ends.
-            resolution: m; parts of the move in which bodies that may touch move less are not divided further. A
-                collision is the first one but for such a part before it. A move is undecided where bodies come so near
-                to their margin and no collision was found.
+            resolution: m; parts of the move in which bodies that may touch move less are not divided further. Before
+                the collision that is found there is none but perhaps in such parts; ``Move.clear`` is where the first
+                of them begins. A move with such parts and no collision is undecided.
 
         Raises:
             InvalidConfiguration: If q0 or q1 is not a configuration of the model.

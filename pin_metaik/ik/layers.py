@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 
@@ -24,7 +23,6 @@ FRESH = 24  # starts from the atlas and as many random ones for a layer of its o
 APART = 1e-2  # rad or m between solutions of one layer
 EVALUATIONS = 10_000  # for one layer, each way, if no solver says otherwise
 INSIDE = 0.9  # of a tolerance: how far off the middle other targets within it are
-CORNERS = 9  # targets in the tolerances of one, at most
 DRIFT = 0.5  # of the longest step of a joint: how far a redundant chain is moved among the solutions of one pose
 TINY = 1e-12  # of a unit vector: what counts as not moving a joint
 
@@ -139,9 +137,9 @@ class Layers:
         if not problem.loose or len(problem.targets) > 1:
             return [problem]
         target = problem.targets[0]
-        shifts, turns = (_corners(t) for t in (target.position_tolerance, target.orientation_tolerance))
-        offsets = list(itertools.product(shifts, turns))[1 : CORNERS + 1]
-        aims = [problem]
+        still, aims = np.zeros(3), [problem]
+        offsets = [(shift, still) for shift in _off(target.position_tolerance)]
+        offsets += [(still, turn) for turn in _off(target.orientation_tolerance)]
         for shift, turn in offsets:
             pose = target.pose * pin.SE3(pin.exp3(turn), shift)
             aim = replace(
@@ -182,17 +180,17 @@ class Layers:
     def _solve(self, i: int, solver: IKSolver, x: Floats) -> None:
         """Let the solver search for a pose that descents have not met."""
         problem = self.problems[i]
-        result = solver.solve(problem, problem.chain.q(x, self.base), self.rng)
+        q = problem.chain.q(x, self.base)
+        result = solver.solve(problem, q, self.rng)
         if result.success:
             self.found[i] = result.x[None]
 
 
-def _corners(tolerance: Tolerance) -> list[Floats]:
-    """Offsets (3,) to a middle, m or rad: none, then each way along the axes that have a tolerance."""
+def _off(tolerance: Tolerance) -> list[Floats]:
+    """Offsets (3,) from a middle, m or rad: each way along the axes that have a tolerance."""
     each = tolerance if isinstance(tolerance, tuple) else (tolerance,) * 3
     sizes = np.array([INSIDE * t if DEFAULT_TOLERANCE < t < FREE else 0.0 for t in each])
-    ways = [sign * np.where(np.arange(3) == k, sizes, 0.0) for k in np.flatnonzero(sizes) for sign in (1.0, -1.0)]
-    return [np.zeros(3), *ways]
+    return [sign * np.where(np.arange(3) == k, sizes, 0.0) for k in np.flatnonzero(sizes) for sign in (1.0, -1.0)]
 
 
 def _tight(tolerance: Tolerance) -> Tolerance:

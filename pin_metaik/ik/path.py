@@ -86,10 +86,7 @@ class IKPath:
     @property
     def x(self) -> NDArray[np.float64]:
         """(k, n) the chain's coordinates; those of continuous joints run on through whole turns."""
-        x = self.chain.x(self.q)
-        periodic = self.chain.limits.periodic
-        x[:, periodic] = np.unwrap(x[:, periodic], axis=0)
-        return x
+        return self.chain.unwrapped(self.q)
 
     def timed(self, *, velocity: Share = None, acceleration: Share = None, jerk: Share = None) -> TimedPath:
         """The path with times, so that the joints keep their limits at every time; see ``timing.time_path``.

@@ -264,6 +264,12 @@ class Chain:
         """Coordinates (..., n) of configurations q (..., nq); continuous joints as an angle in (-pi, pi]."""
         return self.coordinates.read(self._like("q", q))
 
+    def unwrapped(self, Q: ArrayLike) -> NDArray[np.float64]:
+        """Coordinates (k, n) of configurations Q (k, nq) in a row; continuous joints run on through whole turns."""
+        x, periodic = self.x(array("Q", Q, "k", self.model.nq, error=InvalidConfiguration)), self.limits.periodic
+        x[:, periodic] = np.unwrap(x[:, periodic], axis=0)
+        return x
+
     def configuration(self, q: ArrayLike) -> NDArray[np.float64]:
         """A configuration (nq,) of the caller: checked, and with every joint brought inside its limits.
 

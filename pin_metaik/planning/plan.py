@@ -52,10 +52,7 @@ class JointPlan:
     @property
     def x(self) -> NDArray[np.float64]:
         """(p, n) the chain's coordinates; those of continuous joints run on through whole turns."""
-        x = self.chain.x(self.q)
-        periodic = self.chain.limits.periodic
-        x[:, periodic] = np.unwrap(x[:, periodic], axis=0)
-        return x
+        return self.chain.unwrapped(self.q)
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values, for JSON: lengths in m, angles in rad."""

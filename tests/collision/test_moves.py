@@ -14,9 +14,20 @@ import pytest
 from numpy.testing import assert_allclose
 
 import pin_metaik as mik
-from benchmarks.collision_cases import around_an_arm, gantry
+from benchmarks.collision_cases import around_an_arm, bin_of, gantry
 from benchmarks.collision_truth import Truth
-from pin_metaik.collision import Box, Capsule, HalfSpace, MoveStatus, Obstacle, PointCloud, Sphere, load_scene
+from pin_metaik.collision import (
+    Box,
+    Capsule,
+    HalfSpace,
+    HeightField,
+    MoveStatus,
+    Obstacle,
+    Octree,
+    PointCloud,
+    Sphere,
+    load_scene,
+)
 from pin_metaik.collision.passage import _Passage
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting, UnsupportedJoint
 from tests.collision.worlds import configurations, robot_of, world_of
@@ -189,6 +200,20 @@ def test_what_is_held_counts_on_the_way() -> None:
     assert world.clear_between(np.zeros(3), [1.0, 0.0, 0.0])
 
 
+def test_many_bodies_beside_many_others_are_decided() -> None:
+    for spare, free in ((2e-3, True), (-1e-4, False)):
+        builder = Builder()
+        for side in (0.0, 0.04 + spare):  # two combs of ten balls that slide past each other
+            carrier = builder.add(pin.JointModelPX(), coal.Sphere(0.02), (0.0, side, 0.0))
+            frame = builder.model.getFrameId(f"b{carrier}")
+            for k in range(1, 10):
+                at = pin.SE3(np.eye(3), np.array([0.04 * k, 0.0, 0.0]))
+                ball = pin.GeometryObject(f"{carrier} {k}", carrier, frame, at, coal.Sphere(0.02))
+                builder.geometry.addGeometryObject(ball)
+        world = builder.world()
+        assert world.clear_between([0.0, 1.0], [1.0, 0.0]) is free
+
+
 JOINTS = {
     "free": pin.JointModelFreeFlyer(),
     "ball": pin.JointModelSpherical(),
@@ -283,10 +308,25 @@ def test_moves_among_obstacles_agree_with_samples_of_the_original_geometry(name:
     assert MoveStatus.TOUCHES in {move.status for move in moves}
 
 
+@pytest.mark.parametrize("simplify", ["convex", "capsule"])
+def test_where_simplified_solids_decide_what_is_free_is_free_of_these(simplify: str) -> None:
+    world = mik.CollisionWorld(robot_of("panda"), around_an_arm(), simplify=simplify, exact=False)
+    Q = configurations("panda", 60, seed=6)
+    Q = Q[~world.in_collision_batch(Q)]
+    moves = world.first_contact_batch(Q[:12], Q[12:24])
+    for move in moves:
+        before = min(move.clear, 1.0) * (1.0 - 1e-9)
+        assert not any(world.in_collision(move.at(fraction)) for fraction in np.linspace(0.0, before, 200))
+    assert MoveStatus.TOUCHES in {move.status for move in moves}
+
+
 def test_every_kind_of_obstacle_stops_a_move_and_a_concave_link_too() -> None:
     cloud = np.array([[0.3, y, 0.0] for y in np.linspace(-0.2, 0.2, 40)])
     for obstacle in (
         Obstacle("cloud", PointCloud(cloud, 0.01), (0.0, 0.0, 0.0)),
+        Obstacle("octree", Octree(cloud, 0.02), (0.0, 0.0, 0.0)),
+        Obstacle("field", HeightField((0.1, 0.4), np.full((5, 5), 0.05), -0.2), (0.3, 0.0, 0.0)),
+        Obstacle("bin", bin_of(0.1, 0.4, 0.2, 0.01), (0.3, 0.0, -0.1)),
         Obstacle("pole", Capsule(0.02, 0.5), (0.3, 0.0, 0.0)),
         Obstacle("half", HalfSpace(), pin.SE3(pin.utils.rotate("y", -math.pi / 2), np.array([0.3, 0.0, 0.0]))),
     ):

@@ -82,6 +82,17 @@ def test_processes_come_to_the_same_as_threads(ur5_map: Reachability) -> None:
     assert_array_equal(other.manipulability, ur5_map.manipulability)
 
 
+@pytest.mark.slow
+@pytest.mark.filterwarnings("default")  # of its own start and end
+def test_a_dask_cluster_comes_to_the_same(ur5_map: Reachability) -> None:
+    distributed = pytest.importorskip("distributed")
+    pytest.importorskip("joblib")
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None) as here:
+        other = reachability(chain_of("ur5"), GRID, 8, backend="dask", scheduler=here.scheduler_address)
+    assert_array_equal(other.status, ur5_map.status)
+    assert_array_equal(other.manipulability, ur5_map.manipulability)
+
+
 def test_obstacles_and_positions_alone() -> None:
     chain = chain_of("ur5")
     block = Obstacle("block", Box((0.5, 0.5, 0.5)), (0.5, 0.5, 0.4))
