@@ -21,7 +21,7 @@ def motions_of(name: str, seed: int) -> tuple[np.ndarray, mik.SelfMotions]:
     return pose, mik.self_motions(chain, pose)
 
 
-@pytest.mark.parametrize(("name", "seed"), [("panda", 7), ("panda", 1), ("xarm7", 7), ("xarm7", 8)])
+@pytest.mark.parametrize(("name", "seed"), [("panda", 7), ("xarm7", 7)])
 def test_all_points_are_solutions_and_every_solution_is_on_a_curve(name: str, seed: int) -> None:
     chain = chain_of(name)
     pose, motions = motions_of(name, seed)
@@ -32,7 +32,7 @@ def test_all_points_are_solutions_and_every_solution_is_on_a_curve(name: str, se
             assert np.linalg.norm(error.translation) < 1e-9
             assert np.linalg.norm(pin.log3(error.rotation)) < 1e-9
             assert chain.limits.contains(chain.x(q))
-    for start in chain.box.sample(np.random.default_rng(seed), 40):
+    for start in chain.box.sample(np.random.default_rng(seed), 25):
         result = mik.solve_ik(chain, pose, chain.q(start))
         assert result.success
         assert motions.nearest(result.q).value < 1e-3

@@ -138,8 +138,8 @@ def by_paths(
 
 
 @jit(
-    "UniTuple(i8, 3)(f8[:,::1], i8[:,::1], f8[::1], i8[::1], f8[::1], i8[::1], c16[:,::1], c16[:,:,::1], c16[:,::1],"
-    " c16[:,::1])"
+    "UniTuple(i8, 3)(f8[:,::1], i8[:,::1], f8[::1], i8[::1], f8[::1], i8[::1], c16[:,::1], c16[:,:,::1], i8,"
+    " c16[:,::1], c16[:,::1])"
 )
 def find_roots(
     joints: Floats,
@@ -150,6 +150,7 @@ def find_roots(
     loops: Ints,
     starts: Complexes,
     known: Complexes,
+    degree: int,
     points: Complexes,
     nearly: Complexes,
 ) -> tuple[int, int, int]:
@@ -163,7 +164,8 @@ def find_roots(
         target: (12,) the pose.
         loops: (l,) numbers of the loops to try, until all are found.
         starts: (w, 12) poses to follow paths from after that, until all are found.
-        known: (w, k, 6) all their k roots.
+        known: (w, k, 6) their roots, as far as known.
+        degree: How many there can be; the search ends with so many.
         points: (m, 6) gets the roots.
         nearly: (m, 6) gets what may be a double root, and is nearly real.
 
@@ -172,18 +174,17 @@ def find_roots(
     """
     arm, roots = ComplexArm(joints, wiring, tip, periodic), roots_of(target, points, nearly)
     work, loop, path = complex_scratch(), elimination_scratch(), path_scratch()
-    most = known.shape[1]
-    ends, arrived = np.empty((most, 6), np.complex128), np.empty(most, np.int64)
+    ends, arrived = np.empty(known.shape[1:], np.complex128), np.empty(known.shape[1], np.int64)
     found = near = spent = 0
     for number in loops:
         found, near, more = by_loop(arm, target, number, roots, found, near, loop, work)
         spent += more
-        if found >= most:
+        if found >= degree:
             return found, near, spent
     for w in range(starts.shape[0]):
         ends[:] = known[w]
         found, near, more = by_paths(arm, starts[w], ends, arrived, roots, found, near, path, work)
         spent += more
-        if found >= most:
+        if found >= degree:
             break
     return found, near, spent

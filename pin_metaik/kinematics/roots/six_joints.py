@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 from typing import TypeAlias
 
@@ -69,16 +69,17 @@ class SixJoints:
     """What finds all configurations of six coordinates for a pose.
 
     In complex numbers nearly every pose has the same number of them, ``degree``. For two poses drawn at random all are
-    known, by following them round until nothing new appears: as what they are solutions of cannot be taken apart, each
-    of them is led to every other one by some way round (monodromy; Sommese and Wampler 2005, 15.4).
+    known: those that elimination finds at others are led there, and all are followed round until nothing new appears.
+    As what they are solutions of cannot be taken apart, each of them is led to every other one by some way round
+    (monodromy; Sommese and Wampler 2005, 15.4).
 
     Attributes:
         arm: The arrays of ``ComplexArm``.
         length: m, the unit of lengths in them.
-        degree: How many configurations a pose has, by that.
+        degree: How many configurations a pose has: the most that were found for any.
         bound: How many it can have, by proof; 0: none is known.
-        poses: (w, 12) poses at which all are known ...
-        known: (w, degree, 6) ... and they.
+        poses: (w, 12) poses at which they are known ...
+        known: (w, k, 6) ... and they; k is the degree, but for arms whose configurations are nearly at infinity.
         loops: (l,) numbers of the loops of ``elimination`` that find most of them, best first.
     """
 
@@ -100,7 +101,9 @@ class SixJoints:
         exact_pose(pose, target)
         target[9:] /= self.length
         points, nearly = np.empty((2, MOST, SIX), np.complex128)
-        found, near, spent = find_roots(*self.arm, target, self.loops, self.poses, self.known, points, nearly)
+        found, near, spent = find_roots(
+            *self.arm, target, self.loops, self.poses, self.known, self.degree, points, nearly
+        )
         proved = found == self.bound and simple_roots(*self.arm, target, points[:found]) == self.bound
         return Configurations(points[:found], nearly[:near], found >= self.degree, proved, spent)
 
@@ -126,9 +129,13 @@ def six_joints(paths: ChainArrays) -> SixJoints | None:
         return x
 
     x = drawn()
-    start = _pose(arm, x)
-    known = _all_known(arm, start, x[None], lambda: _pose(arm, drawn()), bound or MOST)
-    if len(known) > MOST // 2:
+    start, known, degree, found = _pose(arm, x), x[None], 1, np.zeros(LOOPS)
+    if len(joints) == SIX:
+        real = [_pose(arm, drawn().real.astype(np.complex128)) for _ in range(POSES)]
+        known, degree, found = _by_elimination(arm, start, known, real)
+    known = _all_known(arm, start, known, lambda: _pose(arm, drawn()), bound or MOST)
+    degree = max(degree, len(known))
+    if degree > MOST // 2:
         return None
     poses, every = [start], [known]
     for _ in range(ROUNDS):
@@ -137,11 +144,9 @@ def six_joints(paths: ChainArrays) -> SixJoints | None:
         if len(ends) == len(known):
             poses, every = [*poses, pose], [*every, ends]
             break
-    found = SixJoints(arm, length, len(known), bound, np.array(poses), np.array(every), np.empty(0, np.int64))
-    if len(joints) > SIX:
-        return found
-    real = [_pose(arm, drawn().real.astype(np.complex128)).real.copy() for _ in range(POSES)]
-    return replace(found, loops=_best_loops(found, real))
+    best = np.argsort(-found, kind="stable")[:2]
+    loops = best[found[best] > GOOD * degree]
+    return SixJoints(arm, length, degree, bound, np.array(poses), np.array(every), loops)
 
 
 def copies_inside(X: Array, limits: Limits, x0: Array) -> Array:
@@ -214,7 +219,7 @@ def _distinct(arm: ComplexArrays, points: Complexes) -> Complexes:
         turns = [np.where(arm[3] == 1, TURN * np.round(way.real / TURN), 0.0) for way in ways]
         if all(np.abs(way - turn).max() > SAME for way, turn in zip(ways, turns, strict=True)):
             kept.append(x)
-    return np.array(kept)
+    return np.array(kept).reshape(-1, SIX)
 
 
 def _all_known(
@@ -234,13 +239,26 @@ def _all_known(
     return known
 
 
-def _best_loops(six: SixJoints, poses: list[Array]) -> Ints:
-    """Numbers of the two loops that find most of all configurations at some real poses, if they find enough."""
+def _by_elimination(
+    arm: ComplexArrays, start: Complexes, known: Complexes, poses: list[Complexes]
+) -> tuple[Complexes, int, Array]:
+    """Configurations (k, 6) of the pose ``start``, led there from those that elimination finds at some real poses.
+
+    With those that are known there; the greatest number found at a pose, as paths from poses with many of them may be
+    lost; and how many each of the twelve loops (12,) finds, on average.
+    """
     from pin_metaik.kinematics.roots.search import find_roots
 
-    found, room = np.zeros(LOOPS), np.empty((2, MOST, SIX), np.complex128)
-    for number in range(LOOPS):
-        only = np.array([number]), six.poses[:0], six.known[:0]
-        found[number] = sum(find_roots(*six.arm, pose, *only, *room)[0] for pose in poses)
-    best = np.argsort(-found, kind="stable")[:2]
-    return best[found[best] > GOOD * six.degree * len(poses)]
+    degree, found, room = 1, np.zeros(LOOPS), np.empty((2, MOST, SIX), np.complex128)
+    none = np.empty((0, 12), np.complex128), np.empty((0, MOST, SIX), np.complex128)
+    for pose in poses:
+        there = []
+        for number in range(LOOPS):
+            count, *_ = find_roots(*arm, pose.real.copy(), np.array([number]), *none, MOST, *room)
+            found[number] += count / len(poses)
+            there.append(room[0, :count].copy())
+        points = _distinct(arm, np.concatenate(there))
+        degree = max(degree, len(points))
+        if len(points):
+            known = _distinct(arm, np.concatenate([known, _followed(arm, pose, points, start)]))
+    return known, degree, found
