@@ -43,8 +43,8 @@ def solve_ik(
     Returns:
         The result: check ``result.success``. A target out of reach is a result too, with the nearest pose found:
         ``UNREACHABLE`` is proved (``result.proof``), for whole poses, positions, orientations and free axes, mimic
-        joints and several frames, each by itself; other goals prove nothing. Nothing is proved of slides without limits, and little of nine joints
-        and more, or within some ten tolerances of what is reachable.
+        joints and several frames, each by itself. Nothing is proved by other goals, nor of slides without limits, and
+        little of nine joints and more, or within some ten tolerances of what is reachable.
 
     Raises:
         InvalidTarget: If the target is not a pose, position, orientation or goal, or a goal does not give numbers.
