@@ -28,7 +28,8 @@ def solve_ik(
     Args:
         chain: The joints to move and the frames to place.
         target: World pose of the chain's frame (``pin.SE3`` or 4x4), a position (3,) in m, a ``Target``, or one
-            ``Target`` for each frame of a chain that has several; or a list with any goals (see ``pin_metaik.goals``).
+            ``Target`` for each frame of a chain that has several; or a list with any goals, which are met together,
+            and wishes, which are improved in the freedom that they leave (see ``pin_metaik.goals``).
         q0: (nq,) configuration to start from; joints outside the chain, and locked ones, are where it has them, in the
             search and in the answer. An arm with a closed form stays on the branch that it is on (shoulder, elbow and
             wrist), if that has a solution. Default: the chain's reference.
@@ -42,11 +43,13 @@ def solve_ik(
     Returns:
         The result: check ``result.success``. A target out of reach is a result too, with the nearest pose found:
         ``UNREACHABLE`` is proved (``result.proof``), for whole poses, positions, orientations and free axes, mimic
-        joints and several frames, each by itself. Nothing is proved of slides without limits, and little of nine joints
-        and more, or within some ten tolerances of what is reachable.
+        joints and several frames, each by itself. Nothing is proved by other goals, nor of slides without limits, and
+        little of nine joints and more, or within some ten tolerances of what is reachable.
 
     Raises:
-        InvalidTarget: If the target is not a pose, position or orientation.
+        InvalidTarget: If the target is not a pose, position, orientation or goal, or a goal does not give numbers.
+        FrameNotFound: If a target or a goal names a frame that there is not.
+        FixedFrame: If a goal is about a frame that the chain does not move.
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
         InvalidBounds: If a joint of the chain has no finite range to search in.
         InvalidSetting: If the world is another model's than the chain, or ``rng`` is not one of these.
