@@ -391,7 +391,7 @@ LIMITS = {
     "upper": np.full(6, 3.0),
     "velocity": np.full(6, 1.0),
     "rotates": np.full(6, True),
-    "winds": np.full(6, False),
+    "multi_turn": np.full(6, False),
     "names": tuple("abcdef"),
 }
 

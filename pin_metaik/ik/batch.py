@@ -205,7 +205,7 @@ def _judge(batch: IKBatch, poses: NDArray[np.float64], tolerances: NDArray[np.fl
     """Let Pinocchio judge one part of the batch."""
     chain, q = batch.chain, batch.q[part]
     errors = np.empty((len(q), 2))
-    chain.kernels.distances(poses, chain.tip.places(q), errors)
+    chain.kernels.distances(poses, chain.tip.fk_batch(q), errors)
     position, orientation = errors.T
     if tolerances[1] == math.inf:
         orientation[:] = 0.0

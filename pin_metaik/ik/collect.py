@@ -167,7 +167,7 @@ class Collection:
         return every.all and self.known > 0
 
     def _by_descents(self) -> None:
-        """Descend from near-by configurations of the atlas and from random ones."""
+        """Descend from the nearest samples of the chain and from random configurations."""
         problem, state = self.problem, self.state
         exclusion = Exclusion(problem, self._descent)
         total = state.left()

@@ -119,7 +119,7 @@ def turned(problem: IKProblem, x: Array, x0: Array, measure: Measure) -> Array:
     A pose does not depend on whole turns of a joint; postures and distances from limits do.
     """
     limits, best = problem.limits, float(measure(problem, x[None], x0)[0])
-    for c in np.flatnonzero(limits.winds & ~limits.periodic):
+    for c in np.flatnonzero(limits.multi_turn & ~limits.periodic):
         for turn in (2.0 * np.pi, -2.0 * np.pi):
             while limits.lower[c] <= x[c] + turn <= limits.upper[c]:
                 tried = x.copy()

@@ -47,7 +47,7 @@ def solve_plain(
     """The result if the target is decided; the best so far if it is not; None if the pose solver cannot take it.
 
     ``settings`` (9,) are those of the pose solver, or None for a solver that does not begin with it. Random starts are
-    drawn for the few targets that the closed form, q0 and the atlas leave: to draw them takes longer than to solve
+    drawn for the few targets that the closed form, q0 and the samples leave: to draw them takes longer than to solve
     most. The pose solver then begins again with them, and ends as if they had been there from the beginning.
     """
     began = perf_counter()
@@ -99,7 +99,7 @@ def solve_plain(
             return None
         if spent < 0:
             return None
-        place = pin.SE3ToXYZQUATtuple(chain.tip.place(q))
+        place = pin.SE3ToXYZQUATtuple(chain.tip.fk(q))
         distance, chord = math.dist(place[:3], position), math.dist(place[3:], quaternion)
         if chord > 1.0:  # an orientation has two quaternions
             chord = min(chord, math.dist(place[3:], [-v for v in quaternion]))

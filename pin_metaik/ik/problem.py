@@ -283,7 +283,7 @@ class IKProblem:
         return self.chain._boxes(t, target.pose.homogeneous, *how, least=least, split=split, begin=begin)
 
     def near(self, count: int) -> NDArray[np.float64]:
-        """Sampled coordinates (count, n) of the chain's atlas with the poses nearest to the targets, nearest first."""
+        """Sampled coordinates (count, n) of the chain with the poses nearest to the targets, nearest first."""
         few("count", count, 0)
         count = int(count)
         out = np.empty((count, self.chain.n))

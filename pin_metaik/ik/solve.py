@@ -54,7 +54,7 @@ def solve_ik(
         InvalidBounds: If a joint of the chain has no finite range to search in.
         InvalidSetting: If the world is another model's than the chain, or ``rng`` is not one of these.
     """
-    seed = as_seed(rng)
+    seed = None if rng is None else as_seed(rng)
     solver = DEFAULT_SOLVER if solver is None else solver
     try:
         if chain.held and q0 is not None:

@@ -46,13 +46,13 @@ class FrameFK:
         self._own = PinocchioData(self.reduced, frame)
         self._spare: list[pin.Data] = []
 
-    def place(self, q: NDArray[np.float64]) -> pin.SE3:
+    def fk(self, q: NDArray[np.float64]) -> pin.SE3:
         """World placement at a configuration q (nq,): a view into ``pin.Data``, which the next call overwrites."""
         own = self._own
         pin.framesForwardKinematics(self.reduced, own.data, q if self._entries is None else q[self._entries])
         return own.placement
 
-    def places(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+    def fk_batch(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
         """World placements at configurations q (k, nq), as positions and quaternions (k, 7).
 
         ``pin.Data`` objects are pooled, because short-lived threads would make a new one each. Numbers leave Pinocchio

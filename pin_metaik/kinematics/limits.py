@@ -28,7 +28,7 @@ class Limits:
         upper: (n,) rad or m, ``inf`` without a limit.
         velocity: (n,) rad/s or m/s, ``inf`` without a limit.
         rotates: (n,) True for an angle, False for a travel.
-        winds: (n,) True for an angle that a whole turn does not change and whose limits leave room for one.
+        multi_turn: (n,) True for an angle that a whole turn does not change and whose limits leave room for one.
         names: The joint of each coordinate, for messages.
     """
 
@@ -36,7 +36,7 @@ class Limits:
     upper: NDArray[np.float64]
     velocity: NDArray[np.float64]
     rotates: NDArray[np.bool_]
-    winds: NDArray[np.bool_]
+    multi_turn: NDArray[np.bool_]
     names: tuple[str, ...]
 
     def __post_init__(self) -> None:
@@ -45,7 +45,7 @@ class Limits:
         Raises:
             InvalidBounds: If a limit is NaN or a lower limit is above its upper one; the joint is named.
         """
-        for name in ("lower", "upper", "velocity", "rotates", "winds"):
+        for name in ("lower", "upper", "velocity", "rotates", "multi_turn"):
             if (given := getattr(self, name)).shape != (len(self.names),):
                 raise InvalidBounds(
                     f"{name} has an entry for each of {len(self.names)} joints, got shape {given.shape}"
@@ -62,8 +62,8 @@ class Limits:
 
     @cached_property
     def arrays(self) -> Bounds:
-        """Lower, upper and winds as the compiled loops take them."""
-        return Bounds(self.lower, self.upper, self.winds.astype(np.int64))
+        """Lower, upper and multi_turn as the compiled loops take them."""
+        return Bounds(self.lower, self.upper, self.multi_turn.astype(np.int64))
 
     @cached_property
     def stuck(self) -> tuple[str, ...]:
@@ -78,7 +78,7 @@ class Limits:
     @property
     def periodic(self) -> NDArray[np.bool_]:
         """(n,) True for a coordinate that returns after a turn and has no limits: a continuous joint."""
-        return self.winds & np.isinf(self.lower) & np.isinf(self.upper)
+        return self.multi_turn & np.isinf(self.lower) & np.isinf(self.upper)
 
     def box(self) -> Box:
         """The finite box to sample in: the limits, or one turn where a joint has none that is the same after a turn.
@@ -88,7 +88,7 @@ class Limits:
         """
         lower, upper = self.lower.copy(), self.upper.copy()
         for i in np.flatnonzero(np.isinf(lower) | np.isinf(upper)):
-            if not self.winds[i]:
+            if not self.multi_turn[i]:
                 raise InvalidBounds(
                     f"joint {self.names[i]!r} has limits [{lower[i]}, {upper[i]}]: a search needs finite ones; "
                     f"pass them with Chain(..., limits={{{self.names[i]!r}: (lower, upper)}})"
@@ -102,11 +102,11 @@ class Limits:
     def one_turn(self) -> Limits:
         """The same limits, but no winding angle with more than the turn in the middle of its range."""
         spare = np.maximum(0.5 * (self.upper - self.lower) - np.pi, 0.0)
-        wide = self.winds & np.isfinite(spare)
+        wide = self.multi_turn & np.isfinite(spare)
         lower, upper = self.lower.copy(), self.upper.copy()
         lower[wide] += spare[wide]
         upper[wide] -= spare[wide]
-        return Limits(lower, upper, self.velocity, self.rotates, self.winds, self.names)
+        return Limits(lower, upper, self.velocity, self.rotates, self.multi_turn, self.names)
 
     def clip(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """The nearest coordinates inside the limits; periodic ones are left as they are."""
@@ -118,7 +118,7 @@ class Limits:
         x, x0 = self._given("x", x), array("x0", x0, len(self.names), finite=False)
         turns = np.round((x0 - x) / turn)
         turns = np.minimum(np.maximum(turns, np.ceil((self.lower - x) / turn)), np.floor((self.upper - x) / turn))
-        return np.where(self.winds, self.clip(x + turn * turns), x)
+        return np.where(self.multi_turn, self.clip(x + turn * turns), x)
 
     def way(self, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
         """Joint steps b - a (..., n), rad or m; a continuous joint takes the shorter way round."""
@@ -131,7 +131,7 @@ class Limits:
         """How far coordinates a and b (..., n) are apart, each by itself, rad or m; whole turns do not count."""
         step = self._given("b", b) - self._given("a", a)
         turns = 2.0 * np.pi * np.round(step / (2.0 * np.pi))
-        return np.abs(np.where(self.winds, step - turns, step))
+        return np.abs(np.where(self.multi_turn, step - turns, step))
 
     def contains(self, x: NDArray[np.float64], tolerance: float = 0.0) -> bool:
         """Whether every coordinate is inside its limits, up to ``tolerance`` (rad or m)."""
@@ -162,8 +162,8 @@ class Limits:
                 )
             i = self.names.index(name)
             lower[i], upper[i] = _pair(name, span)
-        winds = self.winds & (upper - lower >= 2.0 * np.pi)
-        return Limits(lower, upper, self.velocity, self.rotates, winds, self.names)
+        multi_turn = self.multi_turn & (upper - lower >= 2.0 * np.pi)
+        return Limits(lower, upper, self.velocity, self.rotates, multi_turn, self.names)
 
     @checked_as(InvalidBounds)
     def bound(self, leader: str, line: tuple[float, float], follower: str, span: tuple[float, float]) -> Limits:

@@ -122,7 +122,7 @@ def names_of(model: pin.Model, drivers: list[int], parts: dict[int, Parts]) -> t
 
 def limits_of(model: pin.Model, drivers: list[int], parts: dict[int, Parts], mimicked: set[int]) -> Limits:
     """Limits of the driving joints. A ``mimicked`` joint is not multi-turn, because its followers may not be."""
-    lower, upper, velocity, turns, winds = list[float](), list[float](), list[float](), list[bool](), list[bool]()
+    lower, upper, velocity, turns, multi_turn = list[float](), list[float](), list[float](), list[bool](), list[bool]()
     for j in drivers:
         entry, rotates = int(model.joints[j].idx_q), {m.part: m.rotates for m in reversed(parts[j].motions)}
         for kind in parts[j].entries:
@@ -140,7 +140,7 @@ def limits_of(model: pin.Model, drivers: list[int], parts: dict[int, Parts], mim
         count = len(parts[j].names)
         velocity += model.upperVelocityLimit[model.joints[j].idx_v :][:count].tolist()
         turns += [rotates[part] for part in range(count)]
-        winds += [rotates[part] and not parts[j].screw and j not in mimicked for part in range(count)]
+        multi_turn += [rotates[part] and not parts[j].screw and j not in mimicked for part in range(count)]
     low, high = finite_or_infinite(lower), finite_or_infinite(upper)
-    room = np.array(winds) & (high - low >= 2.0 * np.pi)
+    room = np.array(multi_turn) & (high - low >= 2.0 * np.pi)
     return Limits(low, high, finite_or_infinite(velocity), np.array(turns), room, names_of(model, drivers, parts))

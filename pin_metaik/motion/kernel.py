@@ -242,7 +242,7 @@ def lost(bounds: Bounds, x: Floats, m: int, stopped: Floats, work: TickScratch) 
     for a in range(m):
         descent.r[a] = work.error[a]
     copy(x, descent.x)
-    step(Bounds(low, high, bounds.winds), m, FLOOR, descent)
+    step(Bounds(low, high, bounds.multi_turn), m, FLOOR, descent)
     left = 0.0
     for a in range(m):
         rest = work.error[a]
@@ -272,7 +272,7 @@ def aim_behind(bounds: Bounds, x: Floats, m: int, most: Floats, dv: Floats, dt: 
 
 
 @inline
-def add_lead(winds: Ints, m: int, most: Floats, wish: Floats, dt: float, work: TickScratch) -> None:
+def add_lead(multi_turn: Ints, m: int, most: Floats, wish: Floats, dt: float, work: TickScratch) -> None:
     """Add the speeds that move the tips as the targets move, and else are those wished for, to ``best`` (n,)."""
     descent, low, high = work.descent, work.low, work.high
     for j in range(most.shape[0]):
@@ -284,7 +284,7 @@ def add_lead(winds: Ints, m: int, most: Floats, wish: Floats, dt: float, work: T
             for j in range(most.shape[0]):
                 descent.r[a] += descent.J[j, a] * wish[j]
         copy(wish, descent.x)
-        step(Bounds(low, high, winds), m, damping, descent)
+        step(Bounds(low, high, multi_turn), m, damping, descent)
         damping *= 4.0
         if not beyond(descent.x, most):
             break
@@ -293,7 +293,7 @@ def add_lead(winds: Ints, m: int, most: Floats, wish: Floats, dt: float, work: T
 
 
 @inline
-def settle(winds: Ints, m: int, near: Near, work: TickScratch) -> int:
+def settle(multi_turn: Ints, m: int, near: Near, work: TickScratch) -> int:
     """Of the speeds from ``low`` to ``high`` those that move the tips most like the best, into the descent's x (n,).
 
     Begun at ``start``; bodies that would approach each other too fast get a row of their own. Returns how many do.
@@ -314,7 +314,7 @@ def settle(winds: Ints, m: int, near: Near, work: TickScratch) -> int:
         for i in range(p):
             if gaps[i, n] > 0.0:
                 r[m + int(gaps[i, n]) - 1] += PUSH * near.rows[i, APPROACH]
-        step(Bounds(low, high, winds), m + active, YIELDING, descent)
+        step(Bounds(low, high, multi_turn), m + active, YIELDING, descent)
         known, change = active, 0.0
         for j in range(n):
             change = max(change, abs(x[j] - last[j]))
@@ -359,10 +359,10 @@ def aim_in(
     left = lost(bounds, x, m, out[STOPPED], work)
     forget_jumps(descent.J, most, dt, work.lead)
     aim_behind(bounds, x, m, most, dv, dt, work)
-    add_lead(bounds.winds, m, most, wish, dt, work)
+    add_lead(bounds.multi_turn, m, most, wish, dt, work)
     together(v, work.best, dv, work.start)
     allowed(bounds, x, v, most, dv, dt, work.low, work.high)
-    active = settle(bounds.winds, m, near, work)
+    active = settle(bounds.multi_turn, m, near, work)
     for j in range(x.shape[0]):
         out[SPEED, j] = descent.x[j]
         out[BRAKED, j] = min(max(braked(v[j], dv[j]), work.low[j]), work.high[j])

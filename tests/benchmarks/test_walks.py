@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
-FOUR = 5  # calls of a plain pose
+FOUR = 4  # calls of a plain pose
 
 
 def test_a_plain_pose_takes_few_python_calls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -46,7 +46,7 @@ def test_the_errors_of_a_batch_are_pinocchios(name: str) -> None:
             offset = pin.SE3(pin.exp3(turn * pin.exp3(rng.normal(size=3))[0]), 1e-6 * rng.normal(size=3))
             goal = chain.placements(one)[0] * offset
             out = np.empty((1, 2))
-            reached = np.array(pin.SE3ToXYZQUATtuple(chain.tip.place(one)))
+            reached = np.array(pin.SE3ToXYZQUATtuple(chain.tip.fk(one)))
             chain.kernels.distances(goal.homogeneous[None], reached[None], out)
             # Entries of order 1, of a product of ten rotations, are rounded to 1e-16 each.
             assert_allclose(out[0], [np.linalg.norm(offset.translation), turn], atol=3e-15)

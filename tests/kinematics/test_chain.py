@@ -128,7 +128,7 @@ def test_a_helical_joint_turns_and_slides_as_pinocchio_has_it() -> None:
     chain = mik.Chain(screws(), "tip")
     assert chain.n == 3
     assert len(chain.paths.joints) == 4
-    assert not chain.limits.winds[1]  # after a whole turn it is somewhere else
+    assert not chain.limits.multi_turn[1]  # after a whole turn it is somewhere else
     for x in chain.box.sample(np.random.default_rng(0), 50):
         (placement,) = chain.placements(chain.q(x))
         assert_allclose(chain.poses([x])[0, 0], placement.homogeneous, atol=1e-12)

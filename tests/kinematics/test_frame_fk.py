@@ -16,11 +16,11 @@ def test_a_frame_is_placed_as_in_the_whole_model(name: str) -> None:
     chain = chain_of(name)
     model, frame, rng = chain.model, chain.frame_ids[0], np.random.default_rng(0)
     q = np.array([pin.integrate(model, pin.neutral(model), rng.uniform(-1.5, 1.5, model.nv)) for _ in range(50)])
-    places = chain.tip.places(q)
+    places = chain.tip.fk_batch(q)
     for one, place in zip(q, places, strict=True):
         pin.forwardKinematics(model, chain.data, one)
         whole = pin.updateFramePlacement(model, chain.data, frame)
-        assert_allclose(chain.tip.place(one).homogeneous, whole.homogeneous, atol=1e-12)
+        assert_allclose(chain.tip.fk(one).homogeneous, whole.homogeneous, atol=1e-12)
         assert_allclose(place, pin.SE3ToXYZQUATtuple(whole), atol=1e-12)
     assert chain.tip.reduced.njoints == len(model.supports[model.frames[frame].parentJoint])
     assert chain.tip.reduced.nframes == 2
@@ -33,4 +33,4 @@ def test_a_joint_on_the_way_that_mimics_another_keeps_the_whole_model() -> None:
     chain = mik.Chain(model, frame)
     assert chain.tip.reduced is model
     q = chain.q(chain.box.sample(np.random.default_rng(0), 1)[0])
-    assert_allclose(chain.tip.place(q).homogeneous, chain.placements(q)[0].homogeneous, atol=1e-15)
+    assert_allclose(chain.tip.fk(q).homogeneous, chain.placements(q)[0].homogeneous, atol=1e-15)

@@ -81,7 +81,7 @@ def keep_clear(
 
 
 def _hopeless(problem: IKProblem, world: CollisionWorld, q: NDArray[np.float64]) -> bool:
-    """Whether every solution collides as this one, q (nq,), does: two bodies that stand, or that the target holds.
+    """Whether the collision at q (nq,) is common to all solutions: of two bodies that are fixed, or held by a target.
 
     A body stands when none of the chain's joints moves it. A frame with a whole pose for a target holds every body that
     none of them moves against it, to within the tolerances.

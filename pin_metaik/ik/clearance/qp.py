@@ -24,8 +24,8 @@ class Push:
 
     For each pair of bodies at distance d along the normal n, from the one to the other, the row is that of a velocity
     damper (Faverjon and Tournassoud 1987): n' (J_2 - J_1) dx + s >= gain (safe - d). So far pairs may approach, near
-    ones only slowly, and overlapping ones must part; s >= 0 is what cannot be kept in one step, and dear, so that the
-    target is left for a while rather than an overlap kept. Distances are those of the simplified solids.
+    ones only slowly, and overlapping ones must part. s >= 0 is a penalised slack: the program gives up the target for a
+    while before it keeps an overlap. Distances are those of the simplified solids.
 
     Attributes:
         iterations: Steps at most.

@@ -18,7 +18,7 @@ from pin_metaik.ik.state import ENDLESS, SearchState
 from pin_metaik.optimize import Budget, Metaheuristic, minimize
 from pin_metaik.randomness import Rng, as_generator
 
-NEAREST = 24  # entries of the atlas to start from
+NEAREST = 24  # entries of the sample table to start from
 EVERY = 50_000  # evaluations for all solutions, where time is what is budgeted
 CANDIDATES = 256  # solutions kept, to be told apart
 APART = 0.05  # rad or m between solutions; what is nearer collides alike
@@ -63,7 +63,7 @@ class ClearSearch:
         self._generator = as_generator(rng)
 
     def run(self, x: NDArray[np.float64], seeder: Metaheuristic) -> NDArray[np.float64] | None:
-        """Coordinates (n,) that are a solution, from x (n,), which is one but for collisions; None: none was found."""
+        """Collision-free solution (n,) near x (n,), which is a solution in collision; None: none was found."""
         self.found[0], self.known = x, 1
         if not self._redundant:
             return self.every()
@@ -115,7 +115,7 @@ class ClearSearch:
         return least
 
     def starts(self) -> Iterator[NDArray[np.float64]]:
-        """Starts (n,): the atlas' nearest entries, then random ones, for ever."""
+        """Starts (n,): the nearest samples of the chain, then random ones, for ever."""
         yield from self.problem.near(NEAREST)
         for index in count():
             yield from drawn(self.problem.chain, self.rng, index, BATCH)

@@ -193,15 +193,17 @@ class SelfMotionCurve:
     def _turned(self, X: Array) -> Array:
         """Coordinates (k, n) inside the limits, angles on a circle as the copy nearest to ``q0``."""
         limits = self.problem.limits
-        return np.where(limits.winds, limits.nearest_turns(X, self._x0), limits.clip(X))
+        return np.where(limits.multi_turn, limits.nearest_turns(X, self._x0), limits.clip(X))
 
     def _rate(self, criterion: str | Criterion) -> float | None:
         """How much a criterion changes at most for each unit of joint motion; None: nothing is known."""
         if criterion == "nearest":
             return 1.0
         limits = self.problem.limits
-        spans = (limits.upper - limits.lower)[np.isfinite(limits.upper - limits.lower) & ~limits.winds]
-        return 2.0 / float(spans.min()) if criterion == "limits" and len(spans) and not limits.winds.any() else None
+        spans = (limits.upper - limits.lower)[np.isfinite(limits.upper - limits.lower) & ~limits.multi_turn]
+        return (
+            2.0 / float(spans.min()) if criterion == "limits" and len(spans) and not limits.multi_turn.any() else None
+        )
 
     @cached_property
     def _x0(self) -> Array:

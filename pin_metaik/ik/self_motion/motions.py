@@ -196,9 +196,9 @@ class _Search:
         self._problem, self._base, self._resolution, self._watch = problem, base, resolution, watch
         self._total = budget.evaluations or 0
         self._until = np.inf if budget.seconds is None else perf_counter() + budget.seconds
-        self._winds = limits.winds
-        self._lower = np.where(limits.winds, -np.inf, limits.lower)
-        self._upper = np.where(limits.winds, np.inf, limits.upper)
+        self._multi_turn = limits.multi_turn
+        self._lower = np.where(limits.multi_turn, -np.inf, limits.lower)
+        self._upper = np.where(limits.multi_turn, np.inf, limits.upper)
 
     def run(self) -> None:
         """Cover the limits with boxes, and find the curves that go through those that are kept.
@@ -283,7 +283,7 @@ class _Search:
         near = np.zeros(len(kept), np.int64)
         for curve in self.curves:
             x = np.ascontiguousarray(curve.x[self._is_bent(boxes, curve, side)])
-            mark_near(np.ascontiguousarray(kept), x, counts, self._winds.astype(np.int64), self._resolution, near)
+            mark_near(np.ascontiguousarray(kept), x, counts, self._multi_turn.astype(np.int64), self._resolution, near)
         marked: NDArray[np.bool_] = near == 1
         return marked
 
@@ -326,7 +326,7 @@ class _Search:
         """Whether coordinates x (n,) lie on a curve: near to the line from one of its points to the next."""
         from pin_metaik.kinematics.self_motion.near import is_on_curve
 
-        return bool(is_on_curve(x, curve.x, self._winds.astype(np.int64), SAME))
+        return bool(is_on_curve(x, curve.x, self._multi_turn.astype(np.int64), SAME))
 
     def _followed(self, x: Array) -> SelfMotionCurve | None:
         """The curve through a solution x (n,), from end to end; None in a singularity, and for a point alone."""
@@ -359,8 +359,10 @@ class _Search:
             return None
         start[0] = np.clip(start[0], self._lower, self._upper)
         tangents[0] = tangent[0]
-        winds = self._winds.astype(np.int64)
-        count, why, limit, spent = trace(*given, self._lower, self._upper, winds, start[0], way, STEP, points, tangents)
+        multi_turn = self._multi_turn.astype(np.int64)
+        count, why, limit, spent = trace(
+            *given, self._lower, self._upper, multi_turn, start[0], way, STEP, points, tangents
+        )
         self.spent += spent
         end = CurveEnd(EndReason.CLOSED if why == CLOSED else EndReason.SINGULARITY)
         if why == AT_LIMIT:

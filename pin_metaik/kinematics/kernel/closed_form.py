@@ -7,7 +7,7 @@ another (their fourth; their third, a distance, is the same).
 
 A branch need not be exact, as a descent starts from it: where an arm is built almost like that, where a target is a
 little out of reach, or where a joint's angle is lost in rounding. Mostly nothing is left to descend: on ur5, kinova,
-ur10 and z1 a target takes 1.0 evaluations, where the atlas takes 7 to 12, and 0.3 us for the branches; turns kept as
+ur10 and z1 a target takes 1.0 evaluations, where the samples take 7 to 12, and 0.3 us for the branches; turns kept as
 cosine and sine take three quarters of the time of angles.
 """
 
@@ -232,7 +232,7 @@ def all_branches(
     wiring: Ints,
     lower: Floats,
     upper: Floats,
-    winds: Ints,
+    multi_turn: Ints,
     target: Floats,
     guess: Floats,
     out: Floats,
@@ -240,6 +240,6 @@ def all_branches(
     """All branches inside the limits for a target (4, 4), the guess's first: how many rows of out (8, 6) they are."""
     count = 0
     for number in range(8):
-        if on_branch(form, wiring, Bounds(lower, upper, winds), numbers_of(target), guess, number, out[count]):
+        if on_branch(form, wiring, Bounds(lower, upper, multi_turn), numbers_of(target), guess, number, out[count]):
             count += 1
     return count

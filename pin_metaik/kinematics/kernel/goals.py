@@ -1,7 +1,7 @@
 """Goals: how far a tip is from its target, and the derivative of that by the coordinates.
 
-Seen from the target frame, a solved tip stands at the identity: position error p, orientation error log(R), and no
-target left to subtract.
+Errors are of T_target^-1 T_tip, the pose of the tip in the target frame: its position p and its rotation vector
+log(R); both are zero at a solution.
 """
 
 from __future__ import annotations

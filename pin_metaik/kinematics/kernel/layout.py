@@ -76,7 +76,7 @@ class Bounds(NamedTuple):
 
     lower: Floats
     upper: Floats
-    winds: Ints
+    multi_turn: Ints
 
 
 class Entries(NamedTuple):
@@ -88,7 +88,7 @@ class Entries(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """A table of sampled configurations; see ``Atlas``. ``x`` is (c LEAF, n), without rows where there is no table."""
+    """Sampled configurations; see ``SampleTable``. ``x`` is (c LEAF, n), without rows where there is no table."""
 
     leaves: Singles
     x: Singles
@@ -111,8 +111,8 @@ SIZES = 7  # whole numbers at the beginning of a block: six lengths, and where t
 
 def pack(packed: Packed, samples: Samples) -> Floats:
     """A chain in one block of eight-byte numbers, some of them integers or pairs of four-byte numbers."""
-    (joints, wiring, ends, tips), (lower, upper, winds), (least, most, places), reach, form = packed
-    parts = joints, tips, lower, upper, least, most, reach, form, wiring, ends, winds, places
+    (joints, wiring, ends, tips), (lower, upper, multi_turn), (least, most, places), reach, form = packed
+    parts = joints, tips, lower, upper, least, most, reach, form, wiring, ends, multi_turn, places
     begin = SIZES + sum(part.size for part in parts)
     sizes = np.array([len(joints), len(lower), len(least), len(form), len(samples.leaves), begin, len(tips)])
     tables = np.array([samples.scale]), samples.leaves, samples.x, samples.gains
@@ -137,16 +137,16 @@ def chain_in(block: Floats) -> Packed:
     rest = form + 3 * f
     whole = block[rest : rest + 2 * S + T + 1 + 3 * n].view(np.int64)
     ends = 2 * S
-    winds = ends + T + 1
-    places = winds + n
+    multi_turn = ends + T + 1
+    places = multi_turn + n
     return Packed(
         Arm(
             block[SIZES:tips].reshape(S, JOINT),
             whole[:ends].reshape(S, 2),
-            whole[ends:winds],
+            whole[ends:multi_turn],
             block[tips:lower].reshape(T, POSE),
         ),
-        Bounds(block[lower:upper], block[upper:least], whole[winds:places]),
+        Bounds(block[lower:upper], block[upper:least], whole[multi_turn:places]),
         Entries(block[least:most], block[most:reach], whole[places:].reshape(n, 2)),
         block[reach:form],
         block[form:rest].reshape(f, 3),

@@ -25,9 +25,9 @@ class Patience(NamedTuple):
 @inline
 def unwind(x: Floats, x0: Floats, bounds: Bounds) -> None:
     """Move each winding angle by the whole turns that bring it nearest to x0 inside its limits."""
-    lower, upper, winds = bounds.lower, bounds.upper, bounds.winds
+    lower, upper, multi_turn = bounds.lower, bounds.upper, bounds.multi_turn
     for c in range(x.shape[0]):
-        if winds[c] == 1:
+        if multi_turn[c] == 1:
             x[c] = min(max(nearest_turn(x[c], x0[c], lower[c], upper[c]), lower[c]), upper[c])
 
 
@@ -115,13 +115,13 @@ def descend(
 
 
 @inline
-def is_new(x: Floats, solutions: Floats, count: int, winds: Ints, apart: float) -> bool:
+def is_new(x: Floats, solutions: Floats, count: int, multi_turn: Ints, apart: float) -> bool:
     """Whether x differs by more than ``apart`` in some coordinate, whole turns aside, from the solutions so far."""
     for s in range(count):
         same = True
         for c in range(x.shape[0]):
             d = x[c] - solutions[s, c]
-            if winds[c] == 1:
+            if multi_turn[c] == 1:
                 d -= FULL_TURN * np.round(d / FULL_TURN)
             same = same and abs(d) <= apart
         if same:
@@ -168,7 +168,7 @@ def collect_in(
         spent += steps
         if met:
             vain += 1
-            if is_new(x, solutions, count, bounds.winds, apart):
+            if is_new(x, solutions, count, bounds.multi_turn, apart):
                 copy(x, solutions[count])
                 count += 1
                 vain = 0

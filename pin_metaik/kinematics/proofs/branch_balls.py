@@ -161,7 +161,7 @@ def judge_pose(
     wiring: Ints,
     lower: Floats,
     upper: Floats,
-    winds: Ints,
+    multi_turn: Ints,
     target: Floats,
     near: float,
     aligned: float,
@@ -177,7 +177,7 @@ def judge_pose(
         wiring: (6, 2) the coordinate of each joint, and that it turns.
         lower: (6,) rad, limits of the coordinates.
         upper: (6,) rad.
-        winds: (6,) whether a coordinate has whole turns to choose from; not looked at.
+        multi_turn: (6,) whether a coordinate has whole turns to choose from; not looked at.
         target: (4, 4) world pose.
         near: How far (m) the tip may be from it.
         aligned: By how much (rad) it may be turned.
@@ -188,4 +188,4 @@ def judge_pose(
     """
     pose, skew = exactly(numbers_of(target))
     near, aligned = (1.0 + skew) * near + deviation[0], aligned + 2.0 * skew + deviation[1]
-    return possible_branches(form, wiring, Bounds(lower, upper, winds), pose, near, aligned, angles, radii, faults)
+    return possible_branches(form, wiring, Bounds(lower, upper, multi_turn), pose, near, aligned, angles, radii, faults)

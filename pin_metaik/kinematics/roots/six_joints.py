@@ -154,7 +154,7 @@ def copies_inside(X: Array, limits: Limits, x0: Array) -> Array:
 
     Those of a winding coordinate count as one, and come as the copy nearest to x0 (6,).
     """
-    rotates, winds = limits.rotates, limits.winds
+    rotates, multi_turn = limits.rotates, limits.multi_turn
     least, most = limits.lower - BEYOND, limits.upper + BEYOND
     within = np.where((X - least >= 0.0) & (most - X >= 0.0), 0.0, -1.0)
     first = np.where(rotates, np.ceil((least - X) / TURN), 0.0)
@@ -162,7 +162,7 @@ def copies_inside(X: Array, limits: Limits, x0: Array) -> Array:
     inside = (first <= last).all(axis=1)
     X, first, last = X[inside], first[inside], last[inside]
     nearest = np.minimum(np.maximum(np.round((x0 - X) / TURN), first), last)
-    first, last = np.where(winds, nearest, first), np.where(winds, nearest, last)
+    first, last = np.where(multi_turn, nearest, first), np.where(multi_turn, nearest, last)
     if (first == last).all():
         return X + TURN * first
     copies = []

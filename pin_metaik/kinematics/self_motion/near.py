@@ -26,12 +26,12 @@ def bends(joints: Floats, wiring: Ints, tip: Floats, X: Floats, out: Floats) -> 
 
 
 @inline
-def is_within(box: Floats, x: Floats, counts: Ints, winds: Ints, resolution: float) -> bool:
+def is_within(box: Floats, x: Floats, counts: Ints, multi_turn: Ints, resolution: float) -> bool:
     """Whether all of a box (2 m,) is within the resolution of x (n,) in each coordinate that counts."""
     m = box.shape[0] // 2
     for c in counts:
         way = x[c] - box[c]
-        if winds[c] == 1:
+        if multi_turn[c] == 1:
             way -= FULL_TURN * np.round(way / FULL_TURN)
         if abs(way) + box[m + c] > resolution:
             return False
@@ -39,19 +39,19 @@ def is_within(box: Floats, x: Floats, counts: Ints, winds: Ints, resolution: flo
 
 
 @inline
-def is_on(x: Floats, a: Floats, b: Floats, winds: Ints, same: float) -> bool:
+def is_on(x: Floats, a: Floats, b: Floats, multi_turn: Ints, same: float) -> bool:
     """Whether x (n,) is so near to the line from a to b (n,) in every coordinate."""
     along = length = 0.0
     for c in range(x.shape[0]):
         way, step = x[c] - a[c], b[c] - a[c]
-        if winds[c] == 1:
+        if multi_turn[c] == 1:
             way -= FULL_TURN * np.round(way / FULL_TURN)
         along += way * step
         length += step * step
     share = min(max(along / length, 0.0), 1.0) if length > 0.0 else 0.0
     for c in range(x.shape[0]):
         way = x[c] - a[c] - share * (b[c] - a[c])
-        if winds[c] == 1:
+        if multi_turn[c] == 1:
             way -= FULL_TURN * np.round(way / FULL_TURN)
         if abs(way) > same:
             return False
@@ -59,20 +59,20 @@ def is_on(x: Floats, a: Floats, b: Floats, winds: Ints, same: float) -> bool:
 
 
 @jit("b1(f8[::1], f8[:,::1], i8[::1], f8)")
-def is_on_curve(x: Floats, X: Floats, winds: Ints, same: float) -> bool:
+def is_on_curve(x: Floats, X: Floats, multi_turn: Ints, same: float) -> bool:
     """Whether x (n,) is so near to the line through points X (p, n)."""
     for i in range(X.shape[0] - 1):  # noqa: SIM110  any(...) takes a generator, which numba does not
-        if is_on(x, X[i], X[i + 1], winds, same):
+        if is_on(x, X[i], X[i + 1], multi_turn, same):
             return True
     return False
 
 
 @jit("void(f8[:,::1], f8[:,::1], i8[::1], i8[::1], f8, i8[::1])")
-def mark_near(boxes: Floats, X: Floats, counts: Ints, winds: Ints, resolution: float, near: Ints) -> None:
+def mark_near(boxes: Floats, X: Floats, counts: Ints, multi_turn: Ints, resolution: float, near: Ints) -> None:
     """Mark with 1 those of the boxes (k, 2 m) that are within the resolution of a point X (p, n)."""
     for k in range(boxes.shape[0]):
         if near[k] == 0:
             for i in range(X.shape[0]):
-                if is_within(boxes[k], X[i], counts, winds, resolution):
+                if is_within(boxes[k], X[i], counts, multi_turn, resolution):
                     near[k] = 1
                     break

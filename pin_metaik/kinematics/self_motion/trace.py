@@ -214,7 +214,7 @@ def trace_from(
     work: Scratch,
 ) -> tuple[int, int, int, int]:
     """``trace`` in room that was made for it."""
-    arm, n, spent, periodic = unpack(block).arm, x0.shape[0], 0, bounds.winds
+    arm, n, spent, periodic = unpack(block).arm, x0.shape[0], 0, bounds.multi_turn
     tangent, before, trial = curve.tangent, curve.before, curve.trial
     for c in range(n):
         points[0, c], tangent[c] = x0[c], way * tangents[0, c]

@@ -130,8 +130,8 @@ def test_a_pose_that_is_not_quite_a_rotation_is_taken_for_the_nearest_one() -> N
     assert len(mik.solve_ik_all(chain, pose)) == len(exact)
 
 
-def limits(lower: float, upper: float, rotates: bool, winds: bool) -> Limits:
-    flags = np.array([rotates] * 6), np.array([winds] * 6)
+def limits(lower: float, upper: float, rotates: bool, multi_turn: bool) -> Limits:
+    flags = np.array([rotates] * 6), np.array([multi_turn] * 6)
     return Limits(np.full(6, lower), np.full(6, upper), np.ones(6), *flags, tuple("abcdef"))
 
 
