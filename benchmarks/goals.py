@@ -10,18 +10,14 @@ sections named, default all, into ``goals.md``. Times are processor times of one
 from __future__ import annotations
 
 import argparse
-import os
-import platform
-import sys
 from collections.abc import Callable
-from datetime import date
-from importlib.metadata import version
 from pathlib import Path
 from time import thread_time
 
 import numpy as np
 import pinocchio as pin
 from goal_cases import ALONE, TOGETHER, Make, Robot, Truth
+from sections import conditions, page_with
 
 import pin_metaik as mik
 from pin_metaik import goals
@@ -169,25 +165,6 @@ SECTIONS: dict[str, tuple[str, Callable[[argparse.Namespace], list[str]]]] = {
 }
 
 
-def page_with(page: str, title: str, lines: list[str]) -> str:
-    """The page with one section new, all in the order of ``SECTIONS``."""
-    known = {name: text.strip() for name, _, text in (part.partition("\n") for part in page.split("\n## ")[1:])}
-    known[title] = "\n".join(lines).strip()
-    written = [f"## {name}\n\n{known[name]}" for name, _ in SECTIONS.values() if name in known]
-    return "\n\n".join([TITLE, *written]) + "\n"
-
-
-def conditions() -> str:
-    """The command, the date and the machine."""
-    packages = ", ".join(f"{name} {version(name)}" for name in ("pin", "numpy", "numba"))
-    load = ", ".join(f"{value:.1f}" for value in os.getloadavg())
-    command = " ".join(["python", "benchmarks/goals.py", *sys.argv[1:]])
-    return (
-        f"`{command}`, {date.today()}, {os.cpu_count()}-core {platform.machine()}, load {load}, "
-        f"Python {platform.python_version()}, {packages}."
-    )
-
-
 def main() -> None:
     """Measure the sections named and write them into the page, one after the other."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -200,7 +177,8 @@ def main() -> None:
         title, measure = SECTIONS[name]
         lines = [conditions(), "", *measure(options)]
         page = options.out.read_text(encoding="utf-8") if options.out.exists() else TITLE
-        options.out.write_text(page_with(page, title, lines), encoding="utf-8")
+        titles = [title for title, _ in SECTIONS.values()]
+        options.out.write_text(page_with(page, TITLE, titles, title, lines), encoding="utf-8")
 
 
 if __name__ == "__main__":
