@@ -48,7 +48,7 @@ def main() -> None:
         "",
         f"`python benchmarks/motions.py --moves {options.moves} --samples {options.samples}`, {datetime.date.today()}, "
         f"2-core {platform.machine()}, shared, Python {platform.python_version()}, pin {version('pin')}, coal "
-        f"{version('coal')}. Times are by the clock, through Python, one thread.",
+        f"{version('coal')}. Times are of the processor, through Python, one thread.",
         "",
         "## What a move costs",
         "",
@@ -133,9 +133,9 @@ def looks(world: mik.CollisionWorld, q0: Floats, q1: Floats) -> int:
 
 def timed(call, *arguments):
     """What a call returns, and its seconds."""
-    began = time.perf_counter()
+    began = time.process_time()
     result = call(*arguments)
-    return result, time.perf_counter() - began
+    return result, time.process_time() - began
 
 
 def obstacles(rng: np.random.Generator) -> list[Obstacle]:
