@@ -305,8 +305,9 @@ def seven_row(name: str, options: argparse.Namespace) -> str:
         seen += len(found)
         points = [chain.x(curve.sample(0.5 * APART)) for curve in motions]
         off += int((away(chain, found, np.concatenate([np.empty((0, chain.n)), *points])) > APART).sum())
-        best = mik.IKProblem.of(chain, pose).limits.separation(found, chain.x(q0)) if len(found) else np.inf
-        nearest += motions.nearest(q0).value <= np.min(np.linalg.norm(np.atleast_2d(best), axis=-1)) + 1e-4
+        x0 = chain.x(q0)
+        best = np.linalg.norm(chain.limits.nearest_turns(found, x0) - x0, axis=1).min(initial=np.inf)
+        nearest += motions.nearest(q0).value <= best + 1e-4
     count = options.poses
     return (
         f"| {name} | {curves / count:.1f} | {closed / count:.1f} | {proved / count:.1%} | {seen:,} | {off} "

@@ -130,11 +130,12 @@ class SelfMotionCurve:
     def nearest(self, q: ArrayLike) -> CurvePoint:
         """The point with the least distance from a configuration (nq,), rad and m alike; angles the shorter way round.
 
-        It is the nearest of the whole curve, to 1e-4: a distance changes by no more than the joints move.
+        It is the nearest of the whole curve, to 1e-4, as a distance changes by no more than the joints move; but where
+        limits cut off copies by whole turns, as ``best`` finds it.
         """
         x = self.problem.chain.x(array("q", q, self.problem.chain.model.nq, error=InvalidConfiguration))
         measure = measure_of("nearest")
-        return self._least(lambda X: measure(self.problem, X, x), 1.0)
+        return self._least(lambda X: measure(self.problem, self._turned(X), x), self._rate("nearest"))
 
     @checked
     def best(self, criterion: str | Criterion) -> CurvePoint:
@@ -142,8 +143,9 @@ class SelfMotionCurve:
 
         Args:
             criterion: As for ``IKSolver.select``: a name, or a function of a configuration (nq,). For ``"nearest"`` (to
-                ``q0``) and ``"limits"`` it is the best of the whole curve, to 1e-4; others are looked at in every point
-                ``x``, and between the neighbours of each that is better than these.
+                ``q0``) and ``"limits"`` it is the best of the whole curve, to 1e-4, where no joint has finite limits
+                that leave room for a whole turn; others are looked at in every point ``x``, and between the neighbours
+                of each that is better than these.
 
         Raises:
             UnknownName: No criterion of that name.
@@ -197,13 +199,11 @@ class SelfMotionCurve:
 
     def _rate(self, criterion: str | Criterion) -> float | None:
         """How much a criterion changes at most for each unit of joint motion; None: nothing is known."""
-        if criterion == "nearest":
-            return 1.0
         limits = self.problem.limits
-        spans = (limits.upper - limits.lower)[np.isfinite(limits.upper - limits.lower) & ~limits.multi_turn]
-        return (
-            2.0 / float(spans.min()) if criterion == "limits" and len(spans) and not limits.multi_turn.any() else None
-        )
+        spans = (limits.upper - limits.lower)[np.isfinite(limits.upper - limits.lower)]
+        if (limits.multi_turn & ~limits.periodic).any() or not isinstance(criterion, str) or not len(spans):
+            return None
+        return {"nearest": 1.0, "limits": 2.0 / float(spans.min())}.get(criterion)
 
     @cached_property
     def _x0(self) -> Array:
