@@ -17,7 +17,7 @@ from pin_metaik.kinematics.coordinates import consecutive
 from pin_metaik.kinematics.model import as_configuration, frame_id
 
 STEP = 1e-6  # rad or m, of the central differences that stand in for a derivative
-KEPT = 256  # frames and columns of chains that are remembered
+KEPT = 64  # of the last chains: ids of frames, columns and ranges
 
 Found = TypeVar("Found")
 
