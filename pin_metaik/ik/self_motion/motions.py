@@ -50,8 +50,8 @@ class SelfMotions:
     Attributes:
         curves: The longest first.
         complete: ``Proof.BOXES``: every solution inside the limits is within ``resolution`` of a point of one of the
-            curves, in every coordinate but those of a wrist whose axes meet, and with that wrist bent to the same side;
-            where the wrist is nearly straight its coordinates count, too. So a curve is missing only if it stays that
+            curves, in every coordinate but those of a wrist whose axes meet, and with that wrist bent to the same side
+            or nearly straight (a triple product of its axes below 0.01). So a curve is missing only if it stays that
             near to others. ``None``: nothing is proved.
         resolution: rad or m.
         evaluations: Forward kinematics computed, and boxes looked at.
