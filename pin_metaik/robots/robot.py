@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
+from types import ModuleType
 
 import pinocchio as pin
 
@@ -125,7 +126,7 @@ def robot_names() -> list[RobotName]:
 
 @checked_as(InvalidModel)
 def load_robot(
-    name: str | Path | RobotName,
+    name: str | Path | RobotName | ModuleType,
     *,
     parameters: Mapping[str, float] | None = None,
     free_flyer: bool = False,
@@ -139,7 +140,8 @@ def load_robot(
 
     Args:
         name: Name in the catalogue or in example-robot-data (also as ``robot_names`` gives it), path of a URDF, of an
-            MJCF or of a DH table's ``.toml``, or the text of a URDF or an MJCF.
+            MJCF or of a DH table's ``.toml``, the text of a URDF or an MJCF, or a module that has its path as
+            ``URDF_PATH`` or ``MJCF_PATH``, as those of the package robot_descriptions.
         parameters: Values that replace those of a DH table's ``[parameters]``, in the table's units.
         free_flyer: Put the base on a free-flyer, six more coordinates, of which a chain wants limits for
             ``root_joint.x``, ``.y`` and ``.z`` (m); otherwise the base is fixed.
@@ -160,7 +162,7 @@ def load_robot(
     return robot
 
 
-def _loaded(name: str | Path, parameters: Mapping[str, float] | None, base: Base, mimic: bool) -> Robot:
+def _loaded(name: str | Path | ModuleType, parameters: Mapping[str, float] | None, base: Base, mimic: bool) -> Robot:
     label, content, srdf = _located(name)
     source, remarks = content if isinstance(content, Path) else None, list[str]()
     if source is not None and source.suffix.lower() == ".toml":
@@ -180,8 +182,14 @@ def _loaded(name: str | Path, parameters: Mapping[str, float] | None, base: Base
     return Robot(label, model, frame, description, srdf, (*remarks, *said))
 
 
-def _located(name: str | Path) -> tuple[str, str | Path, Path | None]:
+def _located(name: str | Path | ModuleType) -> tuple[str, str | Path, Path | None]:
     """Label (empty if the content has it), file or text, and SRDF of a robot."""
+    if isinstance(name, ModuleType):
+        paths = [getattr(name, kind, None) for kind in ("URDF_PATH", "MJCF_PATH")]
+        found = next((Path(path) for path in paths if isinstance(path, (str, Path))), None)
+        if found is None:
+            raise InvalidModel(f"module {name.__name__!r} describes no robot: it has neither URDF_PATH nor MJCF_PATH")
+        return "", found, None
     if not isinstance(name, (str, Path)):
         raise InvalidModel(f"a robot is a name or a path, got {name!r}")
     if isinstance(name, str):

@@ -1,4 +1,5 @@
 import pickle
+import types
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -354,3 +355,12 @@ def test_whatever_is_listed_can_be_loaded_as_it_is_listed() -> None:
     assert (first.name, last.name) == (listed[0].name, listed[-1].name)
     with pytest.raises(InvalidModel, match="name: expected a text or a path or a RobotName, got 7"):
         load_robot(7)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("kind", ["URDF_PATH", "MJCF_PATH"])
+def test_a_module_that_has_a_path_describes_a_robot(kind):
+    module = types.ModuleType("panda_description")
+    setattr(module, kind, str(mik.load_robot("panda").source))
+    assert mik.load_robot(module).model == mik.load_robot("panda").model
+    with pytest.raises(InvalidModel, match="'types' describes no robot: it has neither URDF_PATH nor MJCF_PATH"):
+        mik.load_robot(types)
