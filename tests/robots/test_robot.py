@@ -360,7 +360,7 @@ def test_whatever_is_listed_can_be_loaded_as_it_is_listed() -> None:
 @pytest.mark.parametrize("kind", ["URDF_PATH", "MJCF_PATH"])
 def test_a_module_that_has_a_path_describes_a_robot(kind):
     module = types.ModuleType("panda_description")
-    setattr(module, kind, str(mik.load_robot("panda").source))
-    assert mik.load_robot(module).model == mik.load_robot("panda").model
+    setattr(module, kind, str(load_robot("panda").source))
+    assert load_robot(module).model == load_robot("panda").model
     with pytest.raises(InvalidModel, match="'types' describes no robot: it has neither URDF_PATH nor MJCF_PATH"):
-        mik.load_robot(types)
+        load_robot(types)
