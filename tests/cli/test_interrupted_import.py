@@ -29,7 +29,7 @@ def test_ctrl_c_during_the_import_leaves_no_traceback() -> None:
         assert process.stdout is not None
         assert process.stdout.readline() == b"importing\n"
         os.kill(process.pid, signal.SIGINT)
-        _, errors = process.communicate()
+        _, errors = process.communicate(timeout=120)
     assert (process.returncode, errors) == (-signal.SIGINT, b"")
 
 
