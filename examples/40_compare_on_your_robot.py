@@ -36,9 +36,7 @@ class BestOfHundred:
 
 def main() -> None:
     bench = Case("bench", "Poses in front of the arm and above the bench.", on_the_bench)
-    suite = Suite(
-        ("ur5",), (bench, CASES["singular"]), ("lm", "dls+restarts", BestOfHundred()), targets=20, budget=2000
-    )
+    suite = Suite(("ur5",), (bench, CASES["singular"]), ("lm", "dls+restarts", BestOfHundred()), tasks=20, budget=2000)
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder)
         print(compare(suite, out))

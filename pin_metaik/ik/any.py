@@ -14,7 +14,7 @@ from pin_metaik.arguments import checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.ik.criteria import Criterion, measure_of
-from pin_metaik.ik.problem import Asked, IKProblem
+from pin_metaik.ik.problem import Asked, IKProblem, check_targets
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solve import solve_ik
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
@@ -107,8 +107,7 @@ def solve_ik_any(
         InvalidSetting: If the world is another model's than the chain.
     """
     began = perf_counter()
-    if len(targets) == 0:
-        raise InvalidTarget("one of no targets cannot be met: give at least one")
+    check_targets(targets, "one of no targets cannot be met: give at least one")
     seed = as_seed(rng)
     solver = DEFAULT_SOLVER if solver is None else solver
     for i, target in enumerate(targets):

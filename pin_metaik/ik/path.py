@@ -16,10 +16,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, checked
 from pin_metaik.collision import CollisionWorld
-from pin_metaik.errors import InvalidSetting, InvalidTarget
+from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik.breaks import BreakReason, PathBreak
 from pin_metaik.ik.layers import Layers
-from pin_metaik.ik.problem import Asked, IKProblem
+from pin_metaik.ik.problem import Asked, IKProblem, check_targets
 from pin_metaik.ik.solver import IKSolver
 from pin_metaik.ik.ways import Way, Ways
 from pin_metaik.kinematics import Chain
@@ -153,8 +153,7 @@ def solve_ik_path(
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
     """
     began = perf_counter()
-    if len(targets) == 0:
-        raise InvalidTarget("a path has at least one target")
+    check_targets(targets, "a path has at least one target")
     given = array("max_step", max_step, "...", finite=False)
     bound = np.full(chain.n, given) if given.ndim == 0 else array("max_step", given, chain.n, finite=False)
     if not (bound > 0.0).all():

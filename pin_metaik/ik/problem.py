@@ -12,7 +12,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from pin_metaik.arguments import array, checked, instance
+from pin_metaik.arguments import array, checked, instance, shown
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSetting, InvalidTarget
 from pin_metaik.ik.goals.goal import Goal, Goals, Outcome
@@ -336,6 +336,14 @@ def check_world(chain: Chain, world: CollisionWorld | None) -> None:
         instance(CollisionWorld, world=world)
     if world is not None and world.model is not chain.model and world.model != chain.model:
         raise InvalidSetting(f"the world is of {world.model.name!r}, not of the chain's model {chain.model.name!r}")
+
+
+def check_targets(targets: object, none: str) -> None:
+    """Raise InvalidTarget if targets are not a list, or if there are none: then ``none`` says what is missing."""
+    if isinstance(targets, str) or not (isinstance(targets, Sequence) or np.ndim(cast(ArrayLike, targets))):
+        raise InvalidTarget(f"targets are a list of poses or positions, got {shown(targets)}")
+    if len(cast(Sequence[object], targets)) == 0:
+        raise InvalidTarget(none)
 
 
 @cache

@@ -40,6 +40,7 @@ SEEDER_SHARE = 0.25  # of the budget, for one round of the seeder before its eli
 RESTART_SHARE = 0.8  # of a search, for restarts before the automatic solver turns to a seeder
 FALLBACK = "mtde"  # ... which is this one
 CHOICE, CHOICE_SHARE = 64, 0.5  # solutions to choose from at most, and the share of the budget to find them
+CURVES, STEP_OF_CURVE = 1_000, 64  # evaluations: curves are not looked for with fewer; the last step may take these
 APART = 1e-2  # rad or m by which some coordinate of two of them differs
 RESERVE = 0.05  # of the budget, to settle down at the nearest pose when none is near enough
 
@@ -214,9 +215,9 @@ class IKSolver:
         """
         x0 = problem.chain.x(base)
         budget = Budget(evaluations=max(1, state.left(CHOICE_SHARE)), seconds=self.budget.seconds)
-        compiled = self.descent.settings(0.0) is not None  # curves are followed by loops of their own
-        if problem.world is None and not problem.wishes and compiled and has_curves(problem):
-            motions = find_self_motions(exactly(problem), base, RESOLUTION, budget)
+        if self._has_curves(problem) and budget.evaluations is not None and budget.evaluations > CURVES:
+            allowed = replace(budget, evaluations=budget.evaluations - STEP_OF_CURVE)
+            motions = find_self_motions(exactly(problem), base, RESOLUTION, allowed)
             state.spent += motions.evaluations
             if motions.complete is not None and len(motions):
                 state.x, state.met = problem.chain.x(motions.best(self.select).q), True
@@ -237,6 +238,11 @@ class IKSolver:
             better = slide(problem, best, x0, wished if problem.wishes else measure, self.descent)
             kept = problem.accepts(problem.chain.q(better, base))
             state.x, state.met = better if kept else best, True
+
+    def _has_curves(self, problem: IKProblem) -> bool:
+        """Whether a choice is made among curves of solutions: nothing else counts, and compiled loops follow them."""
+        compiled = self.descent.settings(0.0) is not None
+        return compiled and problem.world is None and not problem.wishes and has_curves(problem)
 
     def _measure_for(self, problem: IKProblem) -> Measure | None:
         """What chooses among the solutions of a problem, if anything does: ``select``, or else the wishes."""

@@ -16,10 +16,10 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.dexterity import manipulability
-from pin_metaik.errors import InvalidBounds, InvalidTarget
+from pin_metaik.errors import InvalidBounds
 from pin_metaik.ik import IKBatch, IKResult, IKSolver, Target, solve_ik_batch
 from pin_metaik.ik.goals.pose import TargetLike
-from pin_metaik.ik.problem import IKProblem, check_world
+from pin_metaik.ik.problem import IKProblem, check_targets, check_world
 from pin_metaik.interrupts import wrapped
 from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Box, Budget, Metaheuristic, Result, Status, minimize
@@ -133,8 +133,7 @@ def place_base(
     """
     began = perf_counter()
     check_world(chain, world)
-    if len(targets) == 0:
-        raise InvalidTarget("a place is looked for at least one target, got none")
+    check_targets(targets, "a place is looked for at least one target, got none")
     site = _Site(chain, [Target.of(target) for target in targets], q0, world)
     region = site.around() if region is None else region
     if len(region.lower) != 3:

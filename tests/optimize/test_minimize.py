@@ -177,7 +177,7 @@ def test_a_watch_is_handed_the_points_of_every_generation():
     result = minimize(costs, BOX, "pso", Budget(400), watch=lambda at: seen.append(at.population))
     assert sum(len(generation.X) for generation in seen) == 400
     for X, f in seen:
-        assert BOX.holds(X)
+        assert BOX.contains_all(X)
         assert_array_equal(f, np.where(X[:, 0] < 0, np.inf, np.square(X).sum(axis=1)))
     assert min(f.min() for _, f in seen) == result.cost
     silent = minimize(costs, BOX, "pso", Budget(400))

@@ -353,7 +353,7 @@ def test_whatever_is_listed_can_be_loaded_as_it_is_listed() -> None:
     listed = robot_names()
     first, last = load_robot(listed[0]), load_robot(listed[-1])
     assert (first.name, last.name) == (listed[0].name, listed[-1].name)
-    with pytest.raises(InvalidModel, match="name: expected a text or a path or a RobotName, got 7"):
+    with pytest.raises(InvalidModel, match="name: expected a text or a path or a RobotName or a module, got 7"):
         load_robot(7)  # type: ignore[arg-type]
 
 

@@ -361,7 +361,7 @@ class _Search:
         tangents[0] = tangent[0]
         multi_turn = self._multi_turn.astype(np.int64)
         count, why, limit, spent = trace(
-            *given, self._lower, self._upper, multi_turn, start[0], way, STEP, points, tangents
+            *given, self._lower, self._upper, multi_turn, start[0], way, STEP, self._left, points, tangents
         )
         self.spent += spent
         end = CurveEnd(EndReason.CLOSED if why == CLOSED else EndReason.SINGULARITY)

@@ -208,6 +208,7 @@ def trace_from(
     x0: Floats,
     way: float,
     longest: float,
+    most: int,
     points: Floats,
     tangents: Floats,
     curve: CurveScratch,
@@ -222,7 +223,7 @@ def trace_from(
     copy(tangent, tangents[0])
     h = last_h = longest
     count, gone = 1, 0.0
-    while count < points.shape[0]:
+    while count < points.shape[0] and spent < most:
         here = points[count - 1]
         for c in range(n):
             trial[c] = here[c] + h * tangent[c] + 0.5 * h * h / last_h * (tangent[c] - before[c])
@@ -280,7 +281,8 @@ def trace_from(
 
 
 @jit(
-    "UniTuple(i8, 4)(f8[::1], f8[:,::1], i8[:,::1]?, f8[::1], f8[::1], i8[::1], f8[::1], f8, f8, f8[:,::1], f8[:,::1])"
+    "UniTuple(i8, 4)(f8[::1], f8[:,::1], i8[:,::1]?, f8[::1], f8[::1], i8[::1], f8[::1], f8, f8, i8, f8[:,::1],"
+    "f8[:,::1])"
 )
 def trace(
     block: Floats,
@@ -292,6 +294,7 @@ def trace(
     x0: Floats,
     way: float,
     longest: float,
+    most: int,
     points: Floats,
     tangents: Floats,
 ) -> tuple[int, int, int, int]:
@@ -307,6 +310,7 @@ def trace(
         x0: (n,) the point.
         way: 1 or -1: along the tangent, or against it.
         longest: Length of a step at most.
+        most: Evaluations after which no step begins; one takes up to 14.
         points: (k, n) gets points on the curve, x0 first.
         tangents: (k, n) gets the tangents there; the first one is given.
 
@@ -317,7 +321,7 @@ def trace(
     S, n, _ = sizes_of(block)
     curve, work = curve_scratch(n), scratch_for(n, rows, S)
     bounds = Bounds(lower, upper, periodic)
-    return trace_from(block, goals, rows, bounds, x0, way, longest, points, tangents, curve, work)
+    return trace_from(block, goals, rows, bounds, x0, way, longest, most, points, tangents, curve, work)
 
 
 @shared
