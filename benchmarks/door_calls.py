@@ -557,6 +557,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "exact": True,
         "padding": {"upper": 0.01, "lower": 0.02},
         "visual": True,
+        "watch": None,
     },
     "mik.CollisionWorld.add": lambda: {"obstacle": collision.Obstacle("ball", collision.Sphere(0.1), (3.0, 0.0, 0.0))},
     "mik.CollisionWorld.move": lambda: {"name": "wall", "pose": (1.9, 0.0, 0.0)},

@@ -100,6 +100,10 @@ class InvalidGeometry(MetaIKError):
     """A shape that is not one: negative sizes, polygons that cross themselves, empty meshes."""
 
 
+class Cancelled(MetaIKError):
+    """A watch ended work that has nothing to return before it is done."""
+
+
 class CannotWrite(MetaIKError):
     """A file or a folder that is to be written, and cannot be."""
 

@@ -1,6 +1,7 @@
 """One protocol to watch long work and to end it, for everything that takes long."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.testing import assert_array_equal
 
 import pin_metaik as mik
 from pin_metaik import learn, mobile, stewart
+from pin_metaik.errors import Cancelled
 from pin_metaik.interrupts import Interrupted
 from pin_metaik.watching import Progress, Watch
 from tests.robots_under_test import chain_of
@@ -104,3 +106,21 @@ def test_a_watch_ends_the_search_for_all_solutions_with_those_so_far() -> None:
     assert found.complete is None
     assert len(found)
     assert all(found.problem.accepts(q) for q in found)
+
+
+def test_a_watch_ends_a_world_that_is_not_made_yet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PIN_METAIK_CACHE", str(tmp_path))  # where nothing is known of the robot's links yet
+    heard: list[Progress] = []
+
+    def watch(at: Progress) -> bool:
+        heard.append(at)
+        return len(heard) == 5
+
+    with pytest.raises(Cancelled, match="which links ever touch"):
+        mik.CollisionWorld(mik.load_robot("ur5"), watch=watch)
+    assert [at.done for at in heard] == [0, 1, 2, 3, 4]
+    assert all(at.total > at.done for at in heard)
+    heard.clear()
+    world = mik.CollisionWorld(mik.load_robot("ur5"), watch=lambda at: heard.append(at))
+    assert heard[-1].done == heard[-1].total - 1
+    assert world.pairs == mik.CollisionWorld(mik.load_robot("ur5")).pairs

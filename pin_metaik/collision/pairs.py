@@ -11,13 +11,16 @@ from pin_metaik.collision.body import Body, Geometry
 from pin_metaik.collision.padding import Padding
 from pin_metaik.collision.srdf import Pair, pair_of, read_srdf
 from pin_metaik.collision.touch import touches
+from pin_metaik.watching import Watch
 
 Srdf: TypeAlias = str | Path | bool | None
 
 CLEAR = 0.01  # m beyond what is asked that links must always keep before they need not be checked
 
 
-def disabled_pairs(robot: Geometry, bodies: tuple[Body, ...], srdf: Srdf, padding: Padding) -> dict[Pair, str]:
+def disabled_pairs(
+    robot: Geometry, bodies: tuple[Body, ...], srdf: Srdf, padding: Padding, watch: Watch | None = None
+) -> dict[Pair, str]:
     """The pairs that are not checked, with the reason: what an SRDF says, else Adjacent, Always or Never.
 
     Args:
@@ -25,8 +28,10 @@ def disabled_pairs(robot: Geometry, bodies: tuple[Body, ...], srdf: Srdf, paddin
         bodies: Its geometry.
         srdf: A file; None for the robot's own, if it has one; False for none.
         padding: What distances collide.
+        watch: Called with configurations looked at and in all; True ends the work.
 
     Raises:
+        Stopped: The watch says so.
         InvalidModel: If the SRDF cannot be read.
         UnknownName: If an SRDF that was given names a link that the robot lacks.
     """
@@ -35,7 +40,7 @@ def disabled_pairs(robot: Geometry, bodies: tuple[Body, ...], srdf: Srdf, paddin
     disabled = {} if path is None else read_srdf(path, links, strict=path != robot.srdf)
     for pair in neighbours(robot.model, {body.link for body in bodies}):
         disabled.setdefault(pair, "Adjacent")
-    for pair, touch in touches(robot.model, bodies).items():
+    for pair, touch in touches(robot.model, bodies, watch).items():
         if touch.always:
             disabled.setdefault(pair, "Always")
         elif touch.gap > padding.between(*pair) + CLEAR:

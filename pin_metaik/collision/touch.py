@@ -15,6 +15,7 @@ from pin_metaik.collision.cache import Arrays, kept, where_kept
 from pin_metaik.collision.solids import Level, Pairs, Solids
 from pin_metaik.collision.srdf import Pair, pair_of
 from pin_metaik.notice import notice
+from pin_metaik.watching import Progress, Watch, tell
 
 SEED = 20_261_125
 SAMPLES = 500
@@ -45,15 +46,19 @@ class Touch:
         return self.meshes >= ALWAYS
 
 
-def touches(model: pin.Model, bodies: tuple[Body, ...]) -> dict[Pair, Touch]:
-    """How the links of a robot touch each other, for every pair that moves against each other; kept on disk."""
+def touches(model: pin.Model, bodies: tuple[Body, ...], watch: Watch | None = None) -> dict[Pair, Touch]:
+    """How the links of a robot touch each other, for every pair that moves against each other; kept on disk.
+
+    Raises:
+        Stopped: The watch says so.
+    """
     pieces = [
         (i, j) for j in range(len(bodies)) for i in range(j) if bodies[i].joint != bodies[j].joint
     ]  # pairs of bodies
     links = sorted({pair_of(bodies[i].link, bodies[j].link) for i, j in pieces})
     number = {pair: k for k, pair in enumerate(links)}
     owner = np.array([number[pair_of(bodies[i].link, bodies[j].link)] for i, j in pieces], dtype=np.int64)
-    arrays = kept("touch", digest(model, bodies), lambda: _sample(model, bodies, pieces, owner, len(links)))
+    arrays = kept("touch", digest(model, bodies), lambda: _sample(model, bodies, pieces, owner, len(links), watch))
     return {
         pair: Touch(float(arrays["share"][k]), float(arrays["meshes"][k]), float(arrays["gap"][k]))
         for pair, k in number.items()
@@ -76,8 +81,14 @@ def random_configurations(model: pin.Model, rng: np.random.Generator, count: int
 
 
 def _sample(
-    model: pin.Model, bodies: tuple[Body, ...], pieces: list[tuple[int, int]], owner: NDArray[np.int64], count: int
+    model: pin.Model,
+    bodies: tuple[Body, ...],
+    pieces: list[tuple[int, int]],
+    owner: NDArray[np.int64],
+    count: int,
+    watch: Watch | None,
 ) -> Arrays:
+    total = SAMPLES + len(pieces)
     rng = np.random.default_rng(SEED)
     Q = random_configurations(model, rng, SAMPLES)
     solids = Solids(model, bodies)
@@ -89,8 +100,9 @@ def _sample(
     apart = np.zeros((len(bodies), 0), dtype=bool)
     asked = Pairs(np.array(pieces, dtype=np.int64).reshape(-1, 2), np.zeros(len(pieces)), apart, 0.0)
     work = f"looking for links of {model.name} that can touch, once; {where_kept()}"
-    with notice(work, SAMPLES + len(pieces)) as line:
+    with notice(work, total) as line:
         for k, q in enumerate(Q):
+            tell(watch, Progress(k, total))
             placed = solids.place(q)
             near = np.flatnonzero(placed.bounds(asked) <= np.maximum(nearest[-1], CONTACT))
             distances[k, near] = [placed.distance(*hulls[pair]) for pair in near]
@@ -99,6 +111,7 @@ def _sample(
         np.minimum.at(by_link.T, owner, distances.T)
         share, gap = (by_link <= CONTACT).mean(axis=0), np.maximum(by_link.min(axis=0), 0.0)
         for k, approach in enumerate(approaches):
+            tell(watch, Progress(SAMPLES + k, total))
             if gap[owner[k]] > 0.0:  # no other piece of the two links touches
                 least = _nearest(approach, Q[np.argsort(distances[:, k])[:STARTS]], rng)
                 gap[owner[k]] = min(gap[owner[k]], least)

@@ -28,10 +28,11 @@ from pin_metaik.collision.shapes import Shape
 from pin_metaik.collision.simplify import Simplify, solid_of
 from pin_metaik.collision.solids import Solids
 from pin_metaik.collision.srdf import Pair, pair_of, write_srdf
-from pin_metaik.errors import InvalidConfiguration, InvalidGeometry, InvalidSetting, UnknownName
+from pin_metaik.errors import Cancelled, InvalidConfiguration, InvalidGeometry, InvalidSetting, UnknownName
 from pin_metaik.kinematics.model import as_configuration, frame_id
 from pin_metaik.optimize.settings import positive, whole
 from pin_metaik.output import writable
+from pin_metaik.watching import Stopped, Watch
 
 RESOLUTION = 1e-4  # m
 
@@ -73,6 +74,7 @@ class CollisionWorld:
         exact: bool = True,
         padding: Mapping[Key, float] | None = None,
         visual: bool = True,
+        watch: Watch | None = None,
     ) -> None:
         """Load the robot's geometry, find out which links ever touch, and put up the obstacles.
 
@@ -93,8 +95,11 @@ class CollisionWorld:
                 paddings of two add up; by two names, in that pair, instead of theirs. Such as
                 ``{"panda_hand": 0.02, ("panda_hand", "table"): 0.05}``. It goes before what obstacles bring.
             visual: Check what a robot without collision geometry looks like, with a warning; otherwise refuse it.
+            watch: Called with configurations looked at and in all, once for a robot, while links that ever touch are
+                found out; True ends the work.
 
         Raises:
+            Cancelled: The watch ended the work; there is no world yet.
             InvalidGeometry: If the robot has no geometry, or two obstacles have one name.
             InvalidModel: If a mesh of the robot or the SRDF cannot be read.
             InvalidSetting: If the margin or a padding is negative or not finite, or a padding is of a pair that is not
@@ -111,7 +116,10 @@ class CollisionWorld:
         self.simplify, self.exact = simplify, exact
         self._links = robot_bodies(robot, simplify, visual)
         self.padding = read_padding(padding or {})
-        self.disabled = disabled_pairs(robot, self._links, srdf, Padding(self.margin, self.padding))
+        try:
+            self.disabled = disabled_pairs(robot, self._links, srdf, Padding(self.margin, self.padding), watch)
+        except Stopped:
+            raise Cancelled("a watch ended the work before it was known which links ever touch") from None
         self.obstacles: tuple[Obstacle, ...] = ()
         self.grasped: tuple[tuple[Obstacle, str], ...] = ()
         self._others: dict[str, Body] = {}
