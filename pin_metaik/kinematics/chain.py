@@ -153,9 +153,7 @@ class Chain:
         self._held_joints = sorted({leader_of(model, j) for j in on_path - motions.keys()})
         self._held = entries_of(model, self._held_joints)
         self.held = tuple(self._held.tolist())
-        self._motions, self._columns = motions, dict[int, int]()
-        for column, joint in enumerate(self.coordinates.joints.tolist()):
-            self._columns.setdefault(joint, column)
+        self._motions = motions
         plain, entries = self.coordinates.plain, self.coordinates.plain_q
         self._least, self._most = np.full(model.nq, -np.inf), np.full(model.nq, np.inf)
         self._least[entries], self._most[entries] = self.limits.lower[plain], self.limits.upper[plain]
@@ -189,7 +187,9 @@ class Chain:
         """Fold the held joints into the way to the frames, where ``reference`` (nq,) has them."""
         check_turns(self.model, self._held_joints, reference)
         self.reference = reference
-        self.paths = chain_arrays(self.model, self.data, self.frame_ids, self._columns, self._motions, reference)
+        self.paths = chain_arrays(
+            self.model, self.data, self.frame_ids, self.coordinates.columns, self._motions, reference
+        )
         self._moves = None if self is self._original else base_moves(self._original.paths, self.paths)
         self._reaches: dict[tuple[int, bool], Reach] = {}
         self._proof_arms: dict[tuple[int, Free], ProofArm | None] = {}
@@ -278,7 +278,7 @@ class Chain:
         """
         inside = np.minimum(np.maximum(as_configuration(self.model, q), self._least), self._most)
         if not self.coordinates.single:
-            check_turns(self.model, sorted(self._columns), inside)
+            check_turns(self.model, sorted(self.coordinates.columns), inside)
             self.coordinates.write(self.limits.clip(self.coordinates.read(inside)), inside)
         return inside
 
@@ -286,7 +286,7 @@ class Chain:
         """(nv, n) Pinocchio's velocity per velocity of each coordinate at x (n,), by which a Jacobian is multiplied."""
         x, model = array("x", x, self.n, error=InvalidConfiguration), self.model
         T = np.zeros((model.nv, self.n))
-        for joint, column in self._columns.items():
+        for joint, column in self.coordinates.columns.items():
             kind = model.joints[joint]
             own = slice(column, column + kind.nv)
             T[kind.idx_v : kind.idx_v + kind.nv, own] = velocities(kind, x[own])

@@ -35,6 +35,14 @@ class Coordinates:
     turning: NDArray[np.int64]
     turning_q: NDArray[np.int64]
 
+    @cached_property
+    def columns(self) -> dict[int, int]:
+        """The first column of x of each joint, by its id."""
+        columns: dict[int, int] = {}
+        for column, joint in enumerate(self.joints.tolist()):
+            columns.setdefault(joint, column)
+        return columns
+
     @property
     def single(self) -> bool:
         """Whether each coordinate has entries of its own, as is not so where there are quaternions."""

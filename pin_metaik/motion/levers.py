@@ -47,7 +47,7 @@ class Levers:
     """
 
     def __init__(self, chain: Chain, checker: Checker) -> None:
-        model, bodies, columns = chain.model, checker.solids.moving, columns_of(chain)
+        model, bodies, columns = chain.model, checker.solids.moving, chain.coordinates.columns
         joints = [j for j in range(1, model.njoints) if leader_of(model, j) in columns]  # from the base on
         motions = [(j, motion) for j in joints for motion in parts_of(model, j).motions]
         alone = np.array([len(parts_of(model, j).motions) == 1 for j, _ in motions])
@@ -93,14 +93,6 @@ class Levers:
 def _extent(placement: pin.SE3, box: NDArray[np.float64]) -> float:
     """How far the ball around a body reaches from the origin of the joint that carries it, m."""
     return min(float(np.linalg.norm(placement.act(box[:3])) + box[6]), FAR)
-
-
-def columns_of(chain: Chain) -> dict[int, int]:
-    """The first column of x of each joint that the chain moves, by id."""
-    columns: dict[int, int] = {}
-    for column, joint in enumerate(chain.coordinates.joints.tolist()):
-        columns.setdefault(joint, column)
-    return columns
 
 
 def _reaches(chain: Chain, columns: dict[int, int], carrier: int, extent: float) -> dict[int, list[float]]:

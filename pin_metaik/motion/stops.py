@@ -12,7 +12,7 @@ from pin_metaik.collision import CollisionWorld
 from pin_metaik.collision.solids import Placed
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.joints import leader_of, parts_of
-from pin_metaik.motion.levers import Levers, PairLevers, columns_of
+from pin_metaik.motion.levers import Levers, PairLevers
 
 STALE = 0.2  # of a distance that bodies may have moved until it is measured again
 INFLUENCE = 0.1  # m; bodies farther apart beyond their margin do not slow anything down
@@ -235,7 +235,7 @@ def _moves(chain: Chain) -> NDArray[np.int64]:
     """(joints, S) 1 where a row of the chain's paths moves what a joint carries; a joint on two paths has one row."""
     model, paths = chain.model, chain.paths
     moves = np.zeros((model.njoints, len(paths.joints)), dtype=np.int64)
-    columns = columns_of(chain)
+    columns = chain.coordinates.columns
     done: set[int] = set()
     row = 0
     for frame in chain.frame_ids:
