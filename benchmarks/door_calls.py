@@ -885,7 +885,18 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "collision.Plane.geometry": dict,
     "collision.Sphere": lambda: {"radius": 0.1},
     "collision.Sphere.geometry": dict,
-    "collision.draw_world": lambda: {"axes": solid_axes(), "world": world(), "Q": [[1.0, 0.2]]},
+    "collision.draw_world": lambda: {
+        "axes": solid_axes(),
+        "world": world(),
+        "Q": [[1.0, 0.2]],
+        "targets": [(0.1, 0.2, 0.3)],
+    },
+    "collision.save_world": lambda: {
+        "path": "world.png",
+        "world": world(),
+        "Q": [[1.0, 0.2]],
+        "targets": [(0.1, 0.2, 0.3)],
+    },
     "collision.Move.at": lambda: {"fraction": 0.5},
     "collision.Move.as_dict": dict,
     "collision.Mesh": lambda: {

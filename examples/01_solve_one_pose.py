@@ -1,9 +1,15 @@
-"""Solve one pose of a Panda, and let Pinocchio confirm the answer."""
+"""Solve one pose of a Panda, and let Pinocchio confirm the answer.
+
+python examples/01_solve_one_pose.py [picture.png]
+"""
+
+import sys
 
 import numpy as np
 import pinocchio as pin
 
 import pin_metaik as mik
+from pin_metaik.collision import save_world
 
 
 def main() -> None:
@@ -23,6 +29,9 @@ def main() -> None:
     # Out of reach is an answer too, not an exception.
     far = mik.solve_ik(chain, pin.SE3(target.rotation, np.array([2.0, 0.0, 0.5])))
     print(f"{far.status}: {far.why}")
+
+    if len(sys.argv) > 1:
+        save_world(sys.argv[1], mik.CollisionWorld(robot), result.q, [target])
 
 
 if __name__ == "__main__":

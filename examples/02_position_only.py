@@ -1,6 +1,12 @@
-"""Position only, on the RV-7FL as its paper has it: three joints place the tip, three are left free."""
+"""Position only, on the RV-7FL as its paper has it: three joints place the tip, three are left free.
+
+python examples/02_position_only.py [picture.png]
+"""
+
+import sys
 
 import pin_metaik as mik
+from pin_metaik.ik import save_arm
 
 
 def main() -> None:
@@ -17,6 +23,9 @@ def main() -> None:
     for name, solver in solvers.items():
         result = mik.solve_ik(chain, target, solver=solver, rng=0)
         print(f"{name:22} {result.status:17} {1e3 * result.position_error:.1e} mm, {result.evaluations} evaluations")
+
+    if len(sys.argv) > 1:
+        save_arm(sys.argv[1], chain, result.q, target.pose.translation)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,14 @@
-"""Your own URDF: a file, its joints and limits, a joint held still, a limit of your own."""
+"""Your own URDF: a file, its joints and limits, a joint held still, a limit of your own.
 
+python examples/03_your_own_urdf.py [picture.png]
+"""
+
+import sys
 import tempfile
 from pathlib import Path
 
 import pin_metaik as mik
+from pin_metaik.ik import save_arm
 
 URDF = """
 <robot name="crane">
@@ -42,6 +47,9 @@ def main() -> None:
     held = mik.Chain(robot.model, "hook", locked=["slew"])
     stuck = mik.solve_ik(held, [0.3, 0.6, 1.4])
     print(f"slew locked: {stuck.status}, {stuck.position_error:.2f} m away; {stuck.why}")
+
+    if len(sys.argv) > 1:
+        save_arm(sys.argv[1], chain, result.q, [0.3, 0.6, 1.4])
 
 
 if __name__ == "__main__":

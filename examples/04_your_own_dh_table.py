@@ -1,9 +1,14 @@
-"""Your own DH table: a TOML file, its URDF, and inverse kinematics on it."""
+"""Your own DH table: a TOML file, its URDF, and inverse kinematics on it.
 
+python examples/04_your_own_dh_table.py [picture.png]
+"""
+
+import sys
 import tempfile
 from pathlib import Path
 
 import pin_metaik as mik
+from pin_metaik.ik import save_arm
 
 TABLE = """
 name = "polar_arm"
@@ -44,6 +49,9 @@ def main() -> None:
     print(result)
     for name, value in zip(chain.names, result.x, strict=True):
         print(f"  {name}: {value:.4f}")
+
+    if len(sys.argv) > 1:
+        save_arm(sys.argv[1], chain, result.q, [0.4, 0.3, 0.6])
 
 
 if __name__ == "__main__":

@@ -1,11 +1,16 @@
-"""Write your own metaheuristic: a generator that yields points and receives their costs. No registration."""
+"""Write your own metaheuristic: a generator that yields points and receives their costs. No registration.
 
+python examples/05_write_your_own_metaheuristic.py [picture.png]
+"""
+
+import sys
 from collections.abc import Generator
 from dataclasses import dataclass
 
 import numpy as np
 
 import pin_metaik as mik
+from pin_metaik.figures import new_figure, save_picture
 
 
 @dataclass(frozen=True)
@@ -35,8 +40,23 @@ def main() -> None:
 
     # It works wherever the built-in ones do, also without any robot.
     box = mik.Box([-5.0] * 6, [5.0] * 6)
-    found = mik.minimize(lambda X: ((X - 1.5) ** 2).sum(axis=1), box, CrossEntropy(), mik.Budget(evaluations=4_000))
+    budget = mik.Budget(evaluations=4_000)
+    found = mik.minimize(sphere, box, CrossEntropy(), budget, trace=True, rng=0)
     print(f"sphere:   cost {found.cost:.1e} after {found.evaluations} evaluations")
+
+    if len(sys.argv) > 1:
+        figure = new_figure((7.0, 4.5))
+        axes = figure.add_subplot()
+        axes.semilogy(*found.trace.T, linewidth=3, label="cross-entropy, above")
+        for name in ("gwo", "mtde", "sfla", "pso", "de"):
+            axes.semilogy(*mik.minimize(sphere, box, name, budget, trace=True, rng=0).trace.T, label=name)
+        axes.set(xlabel="evaluations", ylabel="best cost so far", title="a sphere in six dimensions")
+        axes.legend()
+        save_picture(figure, sys.argv[1])
+
+
+def sphere(X: np.ndarray) -> np.ndarray:
+    return ((X - 1.5) ** 2).sum(axis=1)
 
 
 if __name__ == "__main__":

@@ -1,18 +1,24 @@
-"""Look at a point: a list of goals is met together, and a wish uses the freedom that they leave."""
+"""Look at a point: a list of goals is met together, and a wish uses the freedom that they leave.
+
+python examples/06_look_at_a_point.py [picture.png]
+"""
 
 import math
+import sys
 
 import numpy as np
 
 import pin_metaik as mik
 from pin_metaik import goals
+from pin_metaik.collision import save_world
 
 CAMERA, ELBOW = "panda_hand", "panda_link4"  # the camera is on the hand and looks along its z axis
 POINT = np.array([0.6, 0.1, 0.2])  # m, in the world
 
 
 def main() -> None:
-    chain = mik.Chain(mik.load_robot("panda"), CAMERA)
+    robot = mik.load_robot("panda")
+    chain = mik.Chain(robot, CAMERA)
     asked = [
         goals.LookAt(CAMERA, POINT),
         goals.Distance(CAMERA, POINT, least=0.3, most=0.4),
@@ -40,6 +46,9 @@ def main() -> None:
     apart = goals.Distance(CAMERA, POINT, least=2.0, most=2.5)
     few = mik.IKSolver(budget=mik.Budget(evaluations=2000))
     print("\nfrom two metres away:", mik.solve_ik(chain, [asked[0], apart], solver=few).why)
+
+    if len(sys.argv) > 1:
+        save_world(sys.argv[1], mik.CollisionWorld(robot), with_wish.q, [POINT])
 
 
 if __name__ == "__main__":

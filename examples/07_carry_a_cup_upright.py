@@ -1,12 +1,17 @@
-"""Carry a cup upright: along a line, the cup's axis within five degrees of the vertical, its handle anywhere."""
+"""Carry a cup upright: along a line, the cup's axis within five degrees of the vertical, its handle anywhere.
+
+python examples/07_carry_a_cup_upright.py [picture.png]
+"""
 
 import math
+import sys
 
 import numpy as np
 import pinocchio as pin
 
 import pin_metaik as mik
 from pin_metaik import goals
+from pin_metaik.collision import save_world
 
 HAND = "panda_hand_tcp"
 START, END = np.array([0.5, -0.4, 0.3]), np.array([0.4, 0.4, 0.6])  # m
@@ -14,7 +19,8 @@ TILT = math.radians(5)
 
 
 def main() -> None:
-    chain = mik.Chain(mik.load_robot("panda"), HAND)
+    robot = mik.load_robot("panda")
+    chain = mik.Chain(robot, HAND)
     upright = goals.Pointing(HAND, "x", "z", tolerance=TILT)  # the hand is level where its x axis is up
     places = np.linspace(START, END, 30)
     path = mik.solve_ik_path(chain, [[mik.Target.at(place), upright] for place in places], max_step=0.2)
@@ -33,6 +39,9 @@ def main() -> None:
         result = mik.solve_ik(chain, asked)
         tilt = math.degrees(math.acos(min(1.0, chain.placements(result.q)[0].rotation[2, 0])))
         print(f"{len(asked)} goals and wishes: {result.status}, tilted by {tilt:.3g} degrees")
+
+    if len(sys.argv) > 1:
+        save_world(sys.argv[1], mik.CollisionWorld(robot), path.q[[0, 15, 29]], hands[::7])
 
 
 if __name__ == "__main__":

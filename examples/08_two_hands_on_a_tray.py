@@ -1,12 +1,17 @@
-"""Two hands on a tray: a frame's pose in the coordinates of another, and a centre of mass that stays over the feet."""
+"""Two hands on a tray: a frame's pose in the coordinates of another, and a centre of mass that stays over the feet.
+
+python examples/08_two_hands_on_a_tray.py [picture.png]
+"""
 
 import math
+import sys
 
 import numpy as np
 import pinocchio as pin
 
 import pin_metaik as mik
 from pin_metaik import goals
+from pin_metaik.collision import save_world
 
 LEFT, RIGHT = "gripper_left_base_link", "gripper_right_base_link"
 WIDTH = 0.45  # m, of the tray, from hand to hand
@@ -14,7 +19,8 @@ FEET = [(-0.1, -0.15), (0.1, -0.15), (0.1, 0.15), (-0.1, 0.15)]  # m, corners ar
 
 
 def main() -> None:
-    chain = mik.Chain(mik.load_robot("talos"), [LEFT, RIGHT])
+    robot = mik.load_robot("talos")
+    chain = mik.Chain(robot, [LEFT, RIGHT])
     print(f"{chain.n} joints move two hands")
 
     # The right hand is where the left one sees it: across the tray, and turned by half a turn, as hands are.
@@ -40,6 +46,9 @@ def main() -> None:
     away = goals.Posture(chain.reference).off(goals.Placed(chain, result.q))
     print(f"\n{calm.status}: joints are {calm.wishes[0].off['rad']:.3f} rad from where they stood,", end=" ")
     print(f"without the wish {away['rad']:.3f} rad")
+
+    if len(sys.argv) > 1:
+        save_world(sys.argv[1], mik.CollisionWorld(robot), calm.q, chain.placements(calm.q))
 
 
 if __name__ == "__main__":

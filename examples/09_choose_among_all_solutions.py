@@ -1,8 +1,14 @@
-"""All solutions of a pose, and the one whose joints hold least against gravity."""
+"""All solutions of a pose, and the one whose joints hold least against gravity.
+
+python examples/09_choose_among_all_solutions.py [picture.png]
+"""
+
+import sys
 
 import numpy as np
 
 import pin_metaik as mik
+from pin_metaik.collision import save_world
 
 
 def main() -> None:
@@ -28,6 +34,9 @@ def main() -> None:
     print(f"torque at q0 {torque(q0):.1f} N m, least {best.value:.1f} N m, at {np.round(arm.x(best.q), 2)}")
     error = grasp.actInv(arm.placements(best.q)[0])
     print(f"off the grasp by {np.linalg.norm(error.translation):.0e} m")
+
+    if len(sys.argv) > 1:  # along the longest curve, and the best of all, opaque
+        save_world(sys.argv[1], mik.CollisionWorld(robot), [*motions[0].sample(0.5), best.q], [grasp])
 
 
 if __name__ == "__main__":

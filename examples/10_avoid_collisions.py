@@ -1,10 +1,15 @@
-"""Avoid collisions: a world of the robot, obstacles and what it holds, and solutions that keep clear of all."""
+"""Avoid collisions: a world of the robot, obstacles and what it holds, and solutions that keep clear of all.
+
+python examples/10_avoid_collisions.py [picture.png]
+"""
+
+import sys
 
 import numpy as np
 import pinocchio as pin
 
 import pin_metaik as mik
-from pin_metaik.collision import Box, Obstacle, load_scene
+from pin_metaik.collision import Box, Obstacle, load_scene, save_world
 
 
 def main() -> None:
@@ -37,6 +42,9 @@ def main() -> None:
     # Which pairs of links are checked is yours to read and to change.
     reasons = [reason or "checked" for pair, reason in world.pairs.items() if all("panda" in name for name in pair)]
     print("\npairs of links:", ", ".join(f"{reasons.count(reason)} {reason}" for reason in sorted(set(reasons))))
+
+    if len(sys.argv) > 1:  # faint: the solution that collides; opaque: the one that does not
+        save_world(sys.argv[1], world, [alone.q, result.q], [on_the_board])
 
 
 if __name__ == "__main__":

@@ -1,13 +1,17 @@
 """Plan with OMPL: reach a pose behind a pillar, whichever of its solutions, with a world that proves motions free.
 
 It needs the extra ``ompl``.
+
+python examples/16_plan_with_ompl.py [picture.png]
 """
+
+import sys
 
 import numpy as np
 import pinocchio as pin
 
 import pin_metaik as mik
-from pin_metaik.collision import Box, Obstacle
+from pin_metaik.collision import Box, Obstacle, save_world
 from pin_metaik.planning import Adapter, installed, plan_joint_move
 
 DOWN = pin.rpy.rpyToMatrix(np.pi, 0.0, 0.0)
@@ -45,6 +49,9 @@ def main() -> None:
     setup.setGoalState(adapter.state(goals.q[0]))
     if setup.solve(5.0):
         print("with RRTConnect's range at 0.5 rad:", setup.getSolutionPath().getStateCount(), "states")
+
+    if len(sys.argv) > 1:
+        save_world(sys.argv[1], world, plan.q)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,9 @@
-"""Give a path times: the quickest motion within limits of speed and acceleration, or a gentler one with less jerk."""
+"""Give a path times: the quickest motion within limits of speed and acceleration, or a gentler one with less jerk.
+
+python examples/18_time_a_path.py [picture.png]
+"""
+
+import sys
 
 import numpy as np
 import pinocchio as pin
@@ -26,8 +31,9 @@ def main() -> None:
 
     quickest.write_csv("motion.csv", every=0.01)
     quickest.write_joint_trajectory("motion.json", every=0.01)  # trajectory_msgs/JointTrajectory, for ROS controllers
-    quickest.plot("motion.png")
-    print("written: motion.csv, motion.json; drawn: motion.png")
+    picture = sys.argv[1] if len(sys.argv) > 1 else "motion.png"
+    quickest.plot(picture)
+    print(f"written: motion.csv, motion.json; drawn: {picture}")
 
 
 if __name__ == "__main__":

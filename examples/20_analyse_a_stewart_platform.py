@@ -1,4 +1,9 @@
-"""Analyse a 6x6 Stewart platform: legs, poses, workspace, singularities, and a second opinion by Pinocchio."""
+"""Analyse a 6x6 Stewart platform: legs, poses, workspace, singularities, and a second opinion by Pinocchio.
+
+python examples/20_analyse_a_stewart_platform.py [picture.png]
+"""
+
+import sys
 
 import numpy as np
 
@@ -45,6 +50,10 @@ def main() -> None:
         f"fastest leg        {np.abs(motion.rates).max():.2f} m/s; {motion.reached.mean():.0%} of the way within limits"
     )
     print(f"singular at        {yaw:.2f} degrees of yaw")
+
+    if len(sys.argv) > 1:
+        mechanism = stewart.Mechanism("hexapod", geometry, limits)
+        stewart.save_picture(stewart.draw(mechanism, level, pose), sys.argv[1])
 
     # Somebody else's code: Pinocchio closes the loops of the URDF, and finds the same pose and the same rates.
     closed = stewart.closed_model(stewart.Mechanism("hexapod", geometry, limits))

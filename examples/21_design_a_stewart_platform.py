@@ -1,5 +1,9 @@
-"""Design a 3x3 Stewart platform for a stroke of 100 mm: what is free, what is good, and the file it goes to."""
+"""Design a 3x3 Stewart platform for a stroke of 100 mm: what is free, what is good, and the file it goes to.
 
+python examples/21_design_a_stewart_platform.py [picture.png]
+"""
+
+import sys
 import tempfile
 from dataclasses import replace
 from pathlib import Path
@@ -57,6 +61,9 @@ def main() -> None:
     before, after = (1e6 * m.survey().dexterous_volume(0.9) for m in (again, improved))
     radius = 1e3 * improved.geometry.platform_radius
     print(f"rerun: rm {radius:.1f} mm, {before:.0f} -> {after:.0f} cm3 with a local conditioning index of 0.9 or more")
+
+    if len(sys.argv) > 1:
+        stewart.save_picture(stewart.draw(found.mechanism, found.mechanism.survey()), sys.argv[1])
 
 
 if __name__ == "__main__":

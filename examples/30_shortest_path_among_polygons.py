@@ -1,4 +1,9 @@
-"""The shortest path among polygons, what a particle swarm finds instead, and the ways round the other side."""
+"""The shortest path among polygons, what a particle swarm finds instead, and the ways round the other side.
+
+python examples/30_shortest_path_among_polygons.py [picture.png]
+"""
+
+import sys
 
 from pin_metaik import mobile
 
@@ -29,6 +34,11 @@ def main() -> None:
         mobile.plan_path(scene.between((3.4, 3), None))
     except mobile.Blocked as error:
         print(f"refused: {error}")
+
+    if len(sys.argv) > 1:
+        from pin_metaik.mobile import plots
+
+        plots.save(sys.argv[1], lambda figure: plots.draw_plan(figure, plan, problem.alternatives(3)))
 
 
 if __name__ == "__main__":

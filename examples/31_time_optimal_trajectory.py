@@ -1,4 +1,9 @@
-"""From a path to the quickest trajectory along it, and why the shortest path is not the quickest."""
+"""From a path to the quickest trajectory along it, and why the shortest path is not the quickest.
+
+python examples/31_time_optimal_trajectory.py [picture.png]
+"""
+
+import sys
 
 import numpy as np
 
@@ -30,6 +35,11 @@ def main() -> None:
     body = mobile.mobile_robot(robot)
     q = mobile.configurations(samples)
     print(f"Pinocchio model {body.name!r} with nq = {body.model.nq}: {q.shape[0]} configurations to play")
+
+    if len(sys.argv) > 1:
+        from pin_metaik.mobile import plots
+
+        plots.save(sys.argv[1], lambda figure: plots.draw_trajectory(figure, plan, scene), (11.0, 7.0))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 """A mobile robot drives up to an arm, which reaches for it: one Pinocchio, one viewer.
 
 ``--show`` plays it in a browser; that takes ``pip install '.[viewer]'`` in the clone.
+
+python examples/32_mobile_robot_beside_an_arm.py [picture.png]
 """
 
 import sys
@@ -11,6 +13,7 @@ import pinocchio as pin
 
 import pin_metaik as mik
 from pin_metaik import mobile
+from pin_metaik.collision import Box, Cylinder, Obstacle, save_world
 
 
 def main() -> None:
@@ -36,6 +39,11 @@ def main() -> None:
     reached = mik.solve_ik(chain, pin.SE3(down, above), rest.q, solver=mik.IKSolver(select="nearest"))
     print(f"{panda.name}: {reached.status}, the hand above it")
 
+    if sys.argv[1:] not in ([], ["--show"]):
+        low = [Obstacle(f"box {i}", Box((2 * a, 2 * b, 0.5)), (x, y, 0.25)) for i, (x, y, a, b) in enumerate(BOXES[1:])]
+        there = parked.translation + np.array([0, 0, HEIGHT / 2])
+        low.append(Obstacle("cart", Cylinder(mobile.NOMAD_200.radius, HEIGHT), there))
+        save_world(sys.argv[1], mik.CollisionWorld(panda, low), [rest.q, reached.q], [pin.SE3(down, above)])
     if "--show" in sys.argv:
         show(cart, drive, panda, rest.q, reached.q)
 

@@ -1,9 +1,11 @@
 """Path planners side by side on a scene of one's own, and a path with waits among obstacles that move.
 
-Needs the extra ``planners``. Prints a table and a timetable; with the extra ``plots`` it draws ``timed_path.png``.
+Needs the extra ``planners``. Prints a table and a timetable.
+
+python examples/34_planners_and_what_moves.py [picture.png]
 """
 
-from importlib.util import find_spec
+import sys
 from statistics import median
 
 from pin_metaik import compare, mobile
@@ -30,10 +32,10 @@ def main():
     for t, (x, y) in zip(plan.times, plan.points, strict=True):
         print(f"  {t:7.3f} s  ({x:.3f}, {y:.3f})")
     print(f"  never nearer than {plan.clearance:.3f} m to what moves, which an independent computation says")
-    if find_spec("matplotlib"):
+    if len(sys.argv) > 1:
         from pin_metaik.mobile import plots
 
-        plots.save("timed_path.png", lambda figure: plots.draw_timed(figure, plan), plots.size_of(scene))
+        plots.save(sys.argv[1], lambda figure: plots.draw_timed(figure, plan), plots.size_of(scene))
 
 
 if __name__ == "__main__":

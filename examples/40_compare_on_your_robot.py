@@ -1,7 +1,12 @@
-"""Which method pays on your robot? A case and a method of your own, next to ours, at equal budgets."""
+"""Which method pays on your robot? A case and a method of your own, next to ours, at equal budgets.
+
+python examples/40_compare_on_your_robot.py [picture.png]
+"""
 
 from __future__ import annotations
 
+import shutil
+import sys
 import tempfile
 from pathlib import Path
 
@@ -43,6 +48,8 @@ def main() -> None:
         results = read_results(out)
         page, *_ = write_report(out)
         print(f"{page.name}: {page.stat().st_size // 1024} kB")
+        if len(sys.argv) > 1:
+            shutil.copy(out / "ecdf.png", sys.argv[1])
     print(f"{'case':10} {'method':16} {'solved':>7} {'evaluations':>12}")
     for case in results.cases:
         for method in results.methods:

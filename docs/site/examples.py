@@ -1,0 +1,48 @@
+"""The gallery: the examples run in a folder of their own, and every picture that one writes is shown.
+
+Each example takes the name of a picture as an argument; that is how a reader draws it, too.
+"""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+from sphinx_gallery.scrapers import figure_rst
+
+ROOT = Path(__file__).parents[2]
+STAGE = ROOT / "build" / "examples"
+SMALLER = {"12_screen_grasps": ["12"]}
+"""Arguments before the picture with which an example is quick."""
+STILLS = {"11_look_at_the_world": ROOT / "docs" / "images" / "shelf.png"}
+"""What examples show in a browser, as ``docs/pictures.py`` has taken it."""
+
+
+def stage() -> str:
+    """Copy the examples to where they may write files; that folder, as Sphinx-Gallery wants it."""
+    STAGE.mkdir(parents=True, exist_ok=True)
+    for file in (ROOT / "examples").iterdir():
+        if file.suffix in (".py", ".rst"):
+            shutil.copy2(file, STAGE)
+    return str(STAGE)
+
+
+def arguments(_conf: Any, script: dict[str, Any]) -> list[str]:
+    """What an example is called with: the name of its picture."""
+    name = Path(script["src_file"]).stem
+    if name in STILLS:
+        shutil.copy(STILLS[name], STAGE / f"{name}.png")
+        return []
+    (STAGE / f"{name}.png").unlink(missing_ok=True)
+    return [*SMALLER.get(name, []), f"{name}.png"]
+
+
+def pictures(_block: Any, variables: dict[str, Any], conf: dict[str, Any]) -> str:
+    """The pictures that an example has written so far, for its page."""
+    written = STAGE / f"{Path(variables['src_file']).stem}.png"
+    if not written.exists():
+        return ""
+    shown = next(variables["image_path_iterator"])
+    shutil.move(written, shown)
+    return str(figure_rst([shown], conf["src_dir"]))
