@@ -14,7 +14,7 @@ author = copyright = "The pin_metaik authors"
 release = version = pin_metaik.__version__
 
 root_doc = "docs/index"
-include_patterns = ["docs/**.md", "docs/**.rst", "benchmarks/*.md", "CHANGELOG.md", ".github/CONTRIBUTING.md"]
+include_patterns = ["docs/**.md", "docs/**.rst", "benchmarks/**.md", "CHANGELOG.md", ".github/CONTRIBUTING.md"]
 exclude_patterns = [
     ".venv",
     "build",
