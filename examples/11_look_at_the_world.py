@@ -5,12 +5,14 @@ python examples/11_look_at_the_world.py --picture shelf.png    # takes a picture
 """
 
 import argparse
+import json
 import sys
 import time
 
 import numpy as np
 import pinocchio as pin
 from PIL import Image, ImageDraw, ImageFont
+from PIL.PngImagePlugin import PngInfo
 
 import pin_metaik as mik
 from pin_metaik.collision import load_scene
@@ -38,7 +40,9 @@ def main() -> None:
     viewer.display(clear.q)
     if options.picture:
         panels = [panel(viewer, q, world) for q in (alone.q, clear.q)]
-        Image.fromarray(np.hstack(panels)).save(options.picture)
+        shown = PngInfo()  # which configurations it shows, for whoever finds the file
+        shown.add_text("configurations", json.dumps([q.round(6).tolist() for q in (alone.q, clear.q)]))
+        Image.fromarray(np.hstack(panels)).save(options.picture, pnginfo=shown)
     elif not options.stay:
         print("nobody will have seen it: --stay keeps the page open until Ctrl-C")
     while options.stay:

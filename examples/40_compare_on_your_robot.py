@@ -49,7 +49,7 @@ def main() -> None:
         page, *_ = write_report(out)
         print(f"{page.name}: {page.stat().st_size // 1024} kB")
         if len(sys.argv) > 1:
-            shutil.copy(out / "ecdf.png", sys.argv[1])
+            shutil.copy(page.with_name("ecdf.png"), sys.argv[1])
     print(f"{'case':10} {'method':16} {'solved':>7} {'evaluations':>12}")
     for case in results.cases:
         for method in results.methods:

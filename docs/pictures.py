@@ -1,0 +1,168 @@
+"""The pictures that pages and the README show from the repository: drawn by what a reader would call, and compared.
+
+python docs/pictures.py                 # draws all of them into docs/images
+python docs/pictures.py shelf           # or one
+python docs/pictures.py --check         # draws them elsewhere and compares: exit code 1 if one is stale
+
+The pictures of the gallery are not among these: they are drawn whenever the site is built.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+ROOT = Path(__file__).parents[1]
+IMAGES = ROOT / "docs" / "images"
+SAME = 0.04  # of the range of brightness, root mean square of the difference of thumbnails
+THUMBNAIL = 96, 64  # pixels
+WAIT = 180.0  # s for a browser
+
+SINGULAR = """[workspace]
+x = [0, 0]
+y = [0, 0]
+z = [370, 370]
+counts = [1, 1, 1]
+steps = [21, 21, 41]
+roll = [-30, 30]
+pitch = [-30, 30]
+yaw = [-115, 115]
+"""
+
+
+def command(*words: object, cwd: Path) -> None:
+    """Run ``pin-metaik`` in a folder."""
+    subprocess.run(
+        [sys.executable, "-m", "pin_metaik", *map(str, words)], cwd=cwd, check=True, stdout=subprocess.DEVNULL
+    )
+
+
+def shelf(file: Path) -> None:
+    """The shelf in the browser: example 11, with a chromium that looks."""
+    browser = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    if browser is None:
+        raise SystemExit("the picture of the shelf needs chromium")
+    example = [sys.executable, "-u", ROOT / "examples" / "11_look_at_the_world.py", "--port", "8991", "--picture", file]
+    with tempfile.TemporaryDirectory() as profile, subprocess.Popen(example, stdout=subprocess.PIPE, text=True) as run:
+        assert run.stdout is not None
+        next(line for line in iter(run.stdout.readline, "") if "HTTP" in line)
+        flags = [
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--disable-background-networking",
+            "--enable-unsafe-swiftshader",
+        ]
+        looks = subprocess.Popen(
+            [browser, *flags, f"--user-data-dir={profile}", "--window-size=1440,900", "http://localhost:8991"],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        try:
+            run.communicate(timeout=WAIT)
+        finally:
+            looks.terminate()
+            looks.wait()
+
+
+def example(number: str) -> Callable[[Path], None]:
+    """What an example draws."""
+
+    def draw(file: Path) -> None:
+        (script,) = (ROOT / "examples").glob(f"{number}_*.py")
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([sys.executable, script, file], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+
+    return draw
+
+
+def printed(*words: object, made: str) -> Callable[[Path], None]:
+    """What a command of ``pin-metaik`` draws, as the file ``made`` of its folder."""
+
+    def draw(file: Path) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            command(*words, cwd=Path(folder))
+            shutil.copy(Path(folder, made), file)
+
+    return draw
+
+
+def self_motions(file: Path) -> None:
+    """The self-motions of a Panda for one pose: in two of its joints, and as ways of its elbow."""
+    from matplotlib.figure import Figure
+
+    import pin_metaik as mik
+
+    robot = mik.load_robot("panda")
+    chain, elbow = mik.Chain(robot, robot.frame), mik.Chain(robot, "panda_link4")
+    q0 = chain.q([0.4, 0.3, -0.2, -1.5, 0.5, 1.8, 0.3])
+    motions = mik.self_motions(chain, chain.placements(q0)[0], q0)
+    figure = Figure(figsize=(11.0, 4.6), layout="constrained")
+    joints, places = figure.add_subplot(1, 2, 1), figure.add_subplot(1, 2, 2, projection="3d")
+    for number, curve in enumerate(motions):
+        Q = curve.sample(0.02)
+        x = np.array([chain.x(q) for q in Q])
+        joints.plot(*np.rad2deg(x[:, [0, 2]]).T, label=f"curve {number + 1}, {curve.length:.1f} rad")
+        places.plot(*np.array([elbow.placements(q)[0].translation for q in Q]).T)
+    joints.set(xlabel=f"{chain.names[0]}, deg", ylabel=f"{chain.names[2]}, deg", title="two of its joints")
+    joints.legend()
+    places.set(xlabel="x, m", ylabel="y, m", zlabel="z, m", title="its elbow")
+    places.set_aspect("equal")
+    places.set_box_aspect(None, zoom=0.85)
+    figure.savefig(file, dpi=110)
+
+
+PICTURES: dict[str, Callable[[Path], None]] = {
+    "shelf": shelf,
+    "self_motions": self_motions,
+    "mobile_trajectory": example("31"),
+    "path_generations": printed("mobile", "evolve", "ten_obstacles", "--method", "pso", "-o", "it.png", made="it.png"),
+    "servo_platform": printed("stewart", "show", "servo_sg90", "-o", "it.png", made="it.png"),
+}
+
+
+def thumbnail(file: Path) -> np.ndarray:
+    """A picture in 96 x 64 pixels, grey, 0 to 1."""
+    return np.asarray(Image.open(file).convert("L").resize(THUMBNAIL, Image.Resampling.BOX), dtype=float) / 255.0
+
+
+def differs(file: Path, other: Path) -> float:
+    """How much two pictures differ, as a share of the range of brightness; 1 for other proportions."""
+    one, two = Image.open(file).size, Image.open(other).size
+    if abs(one[0] / one[1] - two[0] / two[1]) > 0.02:
+        return 1.0
+    return float(np.sqrt(np.mean((thumbnail(file) - thumbnail(other)) ** 2)))
+
+
+def main() -> int:
+    """Draw, or compare; the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", help=f"of {', '.join(PICTURES)}; default: all")
+    parser.add_argument("--check", action="store_true", help="compare with those that are there, and write none")
+    options = parser.parse_args()
+    stale = 0
+    with tempfile.TemporaryDirectory() as folder:
+        for name in options.names or PICTURES:
+            made = Path(folder) / f"{name}.png"
+            PICTURES[name](made)
+            kept = IMAGES / f"{name}.png"
+            if not options.check:
+                shutil.copy(made, kept)
+                print(kept.relative_to(ROOT))
+                continue
+            by = differs(made, kept)
+            stale += by > SAME
+            print(f"{name}: {'stale' if by > SAME else 'as drawn now'}, differs by {by:.3f}")
+    return 1 if stale else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
