@@ -1,6 +1,6 @@
 """Write the README's table of comparison, from the page that ``ik_speed.py`` wrote.
 
-    python benchmarks/readme.py
+python benchmarks/readme.py
 """
 
 from __future__ import annotations

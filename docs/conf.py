@@ -39,7 +39,10 @@ extensions = [
 
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 4
-suppress_warnings = ["config.cache"]  # functions of this file in sphinx_gallery_conf
+suppress_warnings = [
+    "config.cache",  # functions of this file in sphinx_gallery_conf
+    "ref.python",  # names that several modules have, where a docstring does not say whose
+]
 
 autosummary_generate = False
 autodoc_default_options = {"members": True, "undoc-members": False}

@@ -36,7 +36,7 @@ def main() -> None:
     print(f"off the grasp by {np.linalg.norm(error.translation):.0e} m")
 
     if len(sys.argv) > 1:  # along the longest curve, and the best of all, opaque
-        save_world(sys.argv[1], mik.CollisionWorld(robot), [*motions[0].sample(0.5), best.q], [grasp])
+        save_world(sys.argv[1], mik.CollisionWorld(robot), [*motions.curves[0].sample(1.5), best.q], [grasp])
 
 
 if __name__ == "__main__":

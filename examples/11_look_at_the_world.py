@@ -1,4 +1,4 @@
-"""Look at the world in a browser, through Pinocchio's viser visualizer: pip install '.[viewer]'.
+"""Look at the world in a browser, through Pinocchio's viser visualizer. It needs the extra ``viewer``.
 
 python examples/11_look_at_the_world.py --stay                 # then open the address it prints; Ctrl-C ends it
 python examples/11_look_at_the_world.py --picture shelf.png    # takes a picture with the browser that looks

@@ -38,7 +38,7 @@ def names(module: ModuleType) -> list[str]:
     listed = getattr(module, "__all__", None)
     if listed is None:
         listed = [name for name, value in vars(module).items() if getattr(value, "__module__", "") == module.__name__]
-        return [name for name in listed if not name.startswith("_")]
+        listed = [name for name in listed if not name.startswith("_")]
     top = importlib.import_module("pin_metaik")
     own = [name for name in listed if module is top or getattr(top, name, None) is not getattr(module, name)]
     return [name for name in own if not inspect.ismodule(getattr(module, name))]

@@ -5,8 +5,10 @@ Each example takes the name of a picture as an argument; that is how a reader dr
 
 from __future__ import annotations
 
+import re
 import shutil
 from pathlib import Path
+from textwrap import indent
 from typing import Any
 
 from sphinx_gallery.scrapers import figure_rst
@@ -23,9 +25,20 @@ def stage() -> str:
     """Copy the examples to where they may write files; that folder, as Sphinx-Gallery wants it."""
     STAGE.mkdir(parents=True, exist_ok=True)
     for file in (ROOT / "examples").iterdir():
-        if file.suffix in (".py", ".rst"):
+        if file.suffix == ".py":
+            (STAGE / file.name).write_text(titled(file.read_text(encoding="utf-8")), encoding="utf-8")
+        elif file.suffix == ".rst":
             shutil.copy2(file, STAGE)
     return str(STAGE)
+
+
+def titled(example: str) -> str:
+    """An example whose docstring has a title, as Sphinx-Gallery wants it: its words up to the first colon or stop."""
+    _, words, code = example.split('"""', 2)
+    title, stop, rest = re.split(r"([:.]|(?<=[?]))(?=\s|$)", words, maxsplit=1)
+    rest = rest.strip() if stop == "." else rest.strip()[:1].upper() + rest.strip()[1:]
+    rest = re.sub(r"^(python .*(?:\npython .*)*)$", lambda call: "::\n\n" + indent(call[1], "    "), rest, flags=re.M)
+    return f'"""\n{title}\n{"=" * len(title)}\n\n{rest}\n"""{code}'
 
 
 def arguments(_conf: Any, script: dict[str, Any]) -> list[str]:

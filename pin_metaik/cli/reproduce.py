@@ -16,8 +16,9 @@ from pin_metaik.cli.codes import INTERRUPTED
 from pin_metaik.cli.progress import progress_bar
 from pin_metaik.compare import papers
 from pin_metaik.compare.papers import PAPERS, Options, Reproduction
+from pin_metaik.compare.report.page import write_page
 from pin_metaik.compare.report.show import show
-from pin_metaik.compare.report.write import need_figures, write
+from pin_metaik.compare.report.write import need_figures
 from pin_metaik.folder_lock import locked
 from pin_metaik.interrupts import kept
 from pin_metaik.lookup import lookup
@@ -35,7 +36,7 @@ def reproduce(
     ] = False,
     long: Annotated[bool, typer.Option("--long", help="Run what takes hours, too.")] = False,
     out: Annotated[
-        Path | None, typer.Option(file_okay=False, help="Folder for Markdown, CSV files and figures.")
+        Path | None, typer.Option(file_okay=False, help="Folder for HTML, Markdown, CSV files and figures.")
     ] = None,
     figures: Annotated[bool, typer.Option(help="Draw figures into --out; needs the extra plots.")] = True,
     rng: Annotated[int, typer.Option(min=0, help="Seed of everything random.")] = 0,
@@ -57,7 +58,7 @@ def reproduce(
         show(again.sections, console)
         console.print(f"\n{again}", style="yellow" if again.partial else None, markup=False, highlight=False)
         if out is not None:
-            for path in write(out, name, _preamble(again), again.sections, figures):
+            for path in write_page(out, name, paper.title, _lead(again), again.sections, figures=figures):
                 console.print(str(path), markup=False, highlight=False, soft_wrap=True)
     raise typer.Exit(INTERRUPTED if again.partial else 0)
 
@@ -74,8 +75,8 @@ def _alone_in(out: Path) -> Iterator[None]:
             out.rmdir()
 
 
-def _preamble(again: Reproduction) -> list[str]:
+def _lead(again: Reproduction) -> list[str]:
     options = again.options
     flags = "".join(f" --{flag}" for flag in ("quick", "long") if getattr(options, flag))
     call = f"pin-metaik reproduce {again.paper.name} --runs {options.runs} --rng {options.rng}{flags}"
-    return [f"# {again.paper.title}", again.paper.source, f"`{call}`, {date.today()}. {again}"]
+    return [again.paper.source, f"`{call}`, {date.today()}. {again}"]

@@ -35,6 +35,7 @@ def test_rv7fl_puts_the_paper_and_ours_side_by_side(tmp_path):
         assert word in result.output
     tables = {"as_printed", "equal", "long", "hybrids", "angles", "runs"}
     assert files(tmp_path) == {
+        "rv7fl.html",
         "rv7fl.md",
         *(f"rv7fl_{table}.csv" for table in tables),
         "rv7fl_convergence.png",
@@ -66,6 +67,7 @@ def test_aerial_arm_puts_the_paper_and_ours_side_by_side(tmp_path, monkeypatch):
         assert word in result.output
     tables = {"text", "times", "readings", "de", "hybrids", "angles", "runs"}
     assert files(tmp_path) == {
+        "aerial_arm.html",
         "aerial_arm.md",
         *(f"aerial_arm_{table}.csv" for table in tables),
         "aerial_arm_per_run.png",
@@ -80,6 +82,7 @@ def test_puma_offset_puts_the_paper_and_ours_side_by_side(tmp_path):
         assert word in result.output
     tables = {"o", "printed", "hybrids", "angles", "runs"}
     assert files(tmp_path) == {
+        "puma_offset.html",
         "puma_offset.md",
         *(f"puma_offset_{table}.csv" for table in tables),
         "puma_offset_convergence.png",

@@ -4,17 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from numpy.testing import assert_allclose, assert_array_equal
 
 from pin_metaik.compare import Suite, Trial
 from pin_metaik.compare.folder.manifest import Manifest
 from pin_metaik.compare.report.by_case import by_case, convergence
 from pin_metaik.compare.report.comparison import sections
-from pin_metaik.compare.report.overview import overview, reading, winners
+from pin_metaik.compare.report.overview import distributions, overview, reading, winners
 from pin_metaik.compare.report.parts import Section
 from pin_metaik.compare.report.seeds import seeds_against_restarts
 from pin_metaik.compare.report.worst import trouble, worst
 from pin_metaik.compare.results.results import Results, cost, summarise
+from pin_metaik.compare.results.standing import headline, standing
 from pin_metaik.compare.trials.trial import CURVE
 
 METHODS = ("dls+restarts", "gwo+dls", "mtde+dls")
@@ -83,17 +85,41 @@ def test_methods_that_do_not_report_evaluations_are_not_ranked(results: Results)
     quiet = Results(results.manifest, silent)
     assert quiet.rankable == ["dls+restarts", "gwo+dls"]
     assert "do not report evaluations: mtde+dls" in " ".join(reading(quiet).text)
-    assert table(overview(quiet), "overview")["mean rank"][-1] is None
+    assert table(overview(quiet), "overview")["mean rank by evaluations"][-1] is None
 
 
 def test_the_overview_ranks_and_counts(results: Results) -> None:
     columns = table(overview(results), "overview")
     assert columns["method"] == ["gwo+dls", "dls+restarts", "mtde+dls"]
-    assert columns["mean rank"] == [1.0, 2.0, 3.0]
+    assert columns["mean rank by evaluations"] == [1.0, 2.0, 3.0]
     assert columns["solved"] == [1.0, 1.0, 39 / 40]
     assert columns["evaluations, median"][:2] == [29.5, 295.0]
     assert columns["95 % interval"][2] == "87.1–99.6"  # Wilson, 39 of 40
     assert "40 tasks: chi squared = 80" in overview(results).text[1]  # 12 / (n k (k + 1)) sum R^2 - 3 n (k + 1)
+
+
+def test_who_solves_all_stands_above_who_is_quick_at_most_of_them(results: Results) -> None:
+    quick = [row("gwo+dls", task, None if task < 4 else 1) for task in range(40)]
+    slow = [row("dls+restarts", task, 900 + task) for task in range(40)]
+    found = Results(MANIFEST, [*quick, *slow, *(row("mtde+dls", task, None) for task in range(40))])
+    assert [place.method for place in standing(found)] == ["dls+restarts", "gwo+dls", "mtde+dls"]
+    assert table(winners(found), "winners")["winner"] == ["dls+restarts"]
+    assert headline(found).startswith("`dls+restarts` comes first: it solves 100.0 % of 40 trials, in 920 evaluations")
+    assert "`gwo+dls`, the next, solves 90.0 %, and takes 0.0011 times the evaluations" in headline(found)
+    assert headline(results).endswith("solves 100.0 %, and takes 10 times the evaluations, task by task.")
+
+
+def test_a_figure_opens_with_six_lines_and_the_default_is_among_them() -> None:
+    names = ("lm", "dls", "lm+restarts", "dls+restarts", "gwo+dls", "mtde+dls", "sfla+dls", "default")
+    trials = [row(name, task, None if name == "default" else 10 + i) for i, name in enumerate(names) for task in (0, 1)]
+    found = Results(Manifest.from_suite(Suite(("ur5",), ("random",), names, tasks=2)), trials)
+    few, every = distributions(found)
+    assert few.shown and not every.shown
+    canvas = Figure(figsize=few.size)
+    few.draw(canvas)
+    widths = {line.get_label(): line.get_linewidth() for line in canvas.axes[0].lines}
+    assert len(widths) == 6 and "sfla+dls" not in widths
+    assert widths.pop("default") > max(widths.values())
 
 
 def test_seeds_win_where_they_take_fewer_evaluations_and_lose_where_they_take_more(results: Results) -> None:
@@ -118,8 +144,8 @@ def test_without_a_control_there_is_no_verdict_on_seeds() -> None:
 
 def test_winner_and_loser_are_named(results: Results) -> None:
     columns = table(winners(results), "winners")
-    assert columns["winner"] == ["gwo+dls"] and columns["solved least"] == ["mtde+dls"]
-    assert columns["not significantly different"] == ["nobody"]
+    assert columns["winner"] == ["gwo+dls"] and columns["fewest solved by"] == ["mtde+dls"]
+    assert columns["not significantly different from it"] == ["none"]
 
 
 def test_the_hardest_task_comes_first_with_the_command_to_see_it(results: Results) -> None:
@@ -146,7 +172,8 @@ def test_errors_false_claims_and_overspending_are_told(results: Results) -> None
 
 def test_pairs_of_a_case_are_all_there(results: Results) -> None:
     columns = table(by_case(results, results.cases["random"]), "pairs_random")
-    assert len(columns["a"]) == 3 and all(p < 1e-6 for p in np.array(columns["p, Holm"], dtype=float))
+    assert len(columns["method a"]) == 3
+    assert all(p < 1e-6 for p in np.array(columns["p, adjusted by Holm"], dtype=float))
 
 
 def test_convergence_takes_the_median_where_all_trials_have_a_cost() -> None:

@@ -1,4 +1,4 @@
-"""Every code block of the README and of the site's pages: Python is run, commands are read by the command line's parser.
+"""Every code block of the README and of the site: Python is run, commands are read by the command line's parser.
 
 A page is one program: its blocks run one after the other, in an empty folder. What a page leaves out stands in it as a
 comment, ``<!-- invisible-code-block: python ... -->``; what needs a package that is not everybody's is skipped with
@@ -13,6 +13,7 @@ from collections.abc import Iterable
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
+from unittest import SkipTest
 
 import pytest
 import typer
@@ -60,5 +61,5 @@ def test_every_code_block_of_a_page_runs(page: Path, tmp_path: Path, monkeypatch
     for example in document.examples():
         try:
             example.evaluate()
-        except pytest.skip.Exception:
+        except SkipTest:
             continue

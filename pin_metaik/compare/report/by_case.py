@@ -11,17 +11,17 @@ from numpy.typing import NDArray
 from pin_metaik.arrays import Array
 from pin_metaik.compare.folder.manifest import CaseEntry
 from pin_metaik.compare.report import figures
-from pin_metaik.compare.report.overview import SPENT, in_words, spent
+from pin_metaik.compare.report.overview import DEFAULTS, RANKED, in_words, ranked
 from pin_metaik.compare.report.parts import Column, Figure, Section, Table, Value
 from pin_metaik.compare.results.results import Results, summarise
+from pin_metaik.compare.results.standing import standing
 from pin_metaik.compare.results.statistics import Pair, friedman
 from pin_metaik.compare.trials.trial import CURVE
 
 
 def by_case(results: Results, case: CaseEntry) -> Section:
     """All there is to know of one case."""
-    costs = results.costs(case.name)
-    test = friedman(costs)
+    test = friedman(results.costs(case.name))
     pairs = results.pairs(case.name)
     text: tuple[str, ...] = (
         case.about,
@@ -32,20 +32,12 @@ def by_case(results: Results, case: CaseEntry) -> Section:
     if trials and all(trial.error is not None for trial in trials):
         ((error, count),) = Counter(trial.error for trial in trials).most_common(1)
         text += (f"No trial came to an end: {count:,} of {len(trials):,} raised {error}",)
-    ranks = dict(zip(results.rankable, test.ranks.tolist(), strict=True))
+    places = standing(results, case=case.name)
     rows: list[tuple[Value, ...]] = []
-    for method in results.methods:
-        whole = summarise(results.rows(case=case.name, method=method))
-        by_robot = [
-            summarise(results.rows(robot=robot, case=case.name, method=method)).rate for robot in results.robots
-        ]
-        rows.append((method, ranks.get(method), *spent(whole), *by_robot))
-    columns = (
-        Column("method"),
-        Column("mean rank", ".2f"),
-        *SPENT,
-        *(Column(f"{robot}", ".1%") for robot in results.robots),
-    )
+    for place, whole in zip(places, ranked(places), strict=True):
+        of_robots = [results.rows(robot=robot, case=case.name, method=place.method) for robot in results.robots]
+        rows.append((*whole, *(summarise(trials).rate for trials in of_robots)))
+    columns = (*RANKED, *(Column(f"solved, {robot}", ".1%") for robot in results.robots))
     tables = (Table(f"case_{case.name}", "All robots together; the last columns robot by robot", columns, rows),)
     return Section(f"Case: {case.name}", text, (*tables, *_pairs(case.name, pairs)))
 
@@ -90,8 +82,9 @@ def duels(results: Results) -> tuple[Figure, ...]:
 
     width, height = figures.panel_size(len(ratios))
     caption = (
-        "Evaluations that the method of a row takes, compared with that of a column: blue is fewer, red is more "
-        "(median over tasks). A cross: the difference is not significant (Wilcoxon, Holm, 0.05)."
+        "How many times the evaluations of the method of a column that of a row takes, in the median over tasks, where "
+        "an unsolved task counts ten times its budget: blue is fewer, red is more. In grey: the difference is "
+        "not significant (Wilcoxon, Holm, 0.05)."
     )
     return (Figure("duels", caption, draw, (width, height + 1.0)),)
 
@@ -112,7 +105,9 @@ def convergence(results: Results) -> Section | None:
         return None
 
     def draw(canvas: Any) -> None:
-        figures.convergence(canvas, curves, CURVE * results.manifest.budget, figures.lines(results.methods))
+        figures.convergence(
+            canvas, curves, CURVE * results.manifest.budget, figures.lines(results.methods, thick=DEFAULTS)
+        )
 
     caption = "Median of the best cost so far over all targets and robots; the middle half of the trials is shaded."
     figure = Figure("convergence", caption, draw, figures.panel_size(len(curves)))
@@ -128,13 +123,13 @@ def _pairs(case: str, pairs: list[Pair]) -> tuple[Table, ...]:
         (p.a, p.b, p.better, p.worse, p.ratio, p.p, p.adjusted) for p in sorted(pairs, key=lambda pair: pair.adjusted)
     ]
     columns = (
-        Column("a"),
-        Column("b"),
-        Column("a quicker on", ","),
-        Column("b quicker on", ","),
-        Column("evaluations a / b", ".3g"),
+        Column("method a"),
+        Column("method b"),
+        Column("tasks on which a takes fewer evaluations", ","),
+        Column("tasks on which b does", ","),
+        Column("evaluations a / b, median", ".3g"),
         Column("p", ".2g"),
-        Column("p, Holm", ".2g"),
+        Column("p, adjusted by Holm", ".2g"),
     )
     return (
         (Table(f"pairs_{case}", "Every pair: Wilcoxon's signed-rank test", columns, rows, shown=False),) if rows else ()

@@ -8,20 +8,20 @@ from typing import Any
 
 from pin_metaik.arguments import checked
 from pin_metaik.compare.folder.environment import read_environment
-from pin_metaik.compare.folder.store import replace_text
 from pin_metaik.compare.report.by_case import by_case, convergence, duels, rates
-from pin_metaik.compare.report.html import html
 from pin_metaik.compare.report.overview import overview, reading, winners
+from pin_metaik.compare.report.page import write_page
 from pin_metaik.compare.report.parts import Column, Section, Table, Value
 from pin_metaik.compare.report.seeds import seeds_against_restarts
 from pin_metaik.compare.report.worst import trouble, worst
-from pin_metaik.compare.report.write import need_figures, write
+from pin_metaik.compare.report.write import need_figures
 from pin_metaik.compare.results.results import Results, read_results
+from pin_metaik.compare.results.standing import headline
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.output import writable
 
 TITLE = "Inverse kinematics where it is hard"
-PAGE, STEM = "report.html", "report"
+STEM = "report"
 
 
 @checked
@@ -42,12 +42,8 @@ def write_report(folder: Path) -> list[Path]:
     if not results.trials:
         raise InvalidSetting(f"{folder} has no rows yet: run pin-metaik compare --out {folder}")
     sessions = read_environment(folder)
-    found = sections(results, str(folder), sessions)
-    lead = lead_of(sessions)
-    written = write(folder / STEM, STEM, [f"# {TITLE}", *lead], found, figures=True)
-    page = folder / STEM / PAGE
-    replace_text(page, html(TITLE, lead, found))
-    return [page, *written]
+    lead = [headline(results), *lead_of(sessions)]
+    return write_page(folder / STEM, STEM, TITLE, lead, sections(results, str(folder), sessions))
 
 
 def sections(results: Results, folder: str, sessions: Sequence[dict[str, Any]]) -> list[Section]:

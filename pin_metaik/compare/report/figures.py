@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
-
-import numpy as np
 
 from pin_metaik.arrays import Array
 
@@ -24,9 +22,10 @@ class Line:
 
     color: str
     linestyle: Any
+    linewidth: float
 
 
-def lines(methods: Sequence[str]) -> dict[str, Line]:
+def lines(methods: Sequence[str], thick: Container[str] = ()) -> dict[str, Line]:
     """A line for each method: its colour says where starts come from, its style what follows.
 
     ``gwo+dls`` and ``gwo`` have one colour, ``gwo+dls`` and ``mtde+dls`` one style; ``lm`` and ``lm+restarts`` differ
@@ -37,7 +36,7 @@ def lines(methods: Sequence[str]) -> dict[str, Line]:
     colours = dict(zip(dict.fromkeys(first for first, _ in parts.values()), itertools.cycle(COLOURS), strict=False))
     rest = sorted(dict.fromkeys(rest for _, rest in parts.values()), key=lambda rest: (rest != "+restarts", rest == ""))
     styles = dict(zip(rest, itertools.cycle(STYLES), strict=False))
-    return {method: Line(colours[first], styles[rest]) for method, (first, rest) in parts.items()}
+    return {m: Line(colours[first], styles[rest], 3.0 if m in thick else 1.5) for m, (first, rest) in parts.items()}
 
 
 def panels(canvas: Any, titles: Sequence[str], **shared: Any) -> dict[str, Any]:
@@ -77,26 +76,28 @@ def distributions(canvas: Any, shares: Mapping[str, Mapping[str, Array]], at: Ar
     axes = panels(canvas, list(shares), sharex=True, sharey=True)
     for case, ax in axes.items():
         for method, share in shares[case].items():
-            ax.step(at, share, where="post", label=method, linewidth=1.5, **vars(looks[method]))
+            ax.step(at, share, where="post", label=method, **vars(looks[method]))
         ax.set(xscale="log", ylim=(-0.02, 1.02), xlim=(at[0], at[-1]))
         ax.grid(**GRID)
     _labelled(canvas, axes, "kernel evaluations", "share of trials solved")
 
 
 def rates(canvas: Any, found: Mapping[str, Mapping[str, tuple[float, float, float]]]) -> None:
-    """Rates with their intervals, a panel a case, a line a method.
+    """Rates with their intervals, a panel a case, a line a method, the highest rate first.
 
     Args:
         canvas: An empty ``matplotlib.figure.Figure``.
         found: Rate, lower and upper end of its interval, by method by case.
     """
-    axes = panels(canvas, list(found), sharex=True, sharey=True)
+    axes = panels(canvas, list(found), sharex=True)
     for case, ax in axes.items():
-        for i, (rate, low, high) in enumerate(found[case].values()):
+        order = sorted(found[case], key=lambda method: found[case][method], reverse=True)
+        for i, method in enumerate(order):
+            rate, low, high = found[case][method]
             ax.plot([low, high], [i, i], color="#0072b2", linewidth=3, alpha=0.35, solid_capstyle="round")
             ax.plot(rate, i, "o", color="#0072b2", markersize=5)
-        ax.set(ylim=(len(found[case]) - 0.5, -0.5), xlim=(-0.03, 1.03))
-        ax.set_yticks(range(len(found[case])), list(found[case]), fontsize="small")
+        ax.set(ylim=(len(order) - 0.5, -0.5), xlim=(-0.03, 1.03))
+        ax.set_yticks(range(len(order)), order, fontsize="small")
         ax.grid(**GRID)
     _labelled(canvas, axes, "share solved, with its 95 % interval", "", legend=False)
 
@@ -114,7 +115,7 @@ def convergence(canvas: Any, curves: Mapping[str, Mapping[str, Array]], at: Arra
     for case, ax in axes.items():
         for method, (low, middle, high) in curves[case].items():
             ax.fill_between(at, low, high, color=looks[method].color, alpha=0.12, linewidth=0)
-            ax.plot(at, middle, label=method, linewidth=1.6, color=looks[method].color)
+            ax.plot(at, middle, label=method, linewidth=looks[method].linewidth, color=looks[method].color)
         ax.set(xscale="log", yscale="log")
         ax.grid(**GRID)
     _labelled(canvas, axes, "kernel evaluations", "best cost so far, m + rad")
@@ -133,15 +134,23 @@ def duels(canvas: Any, names: Sequence[str], ratios: Mapping[str, Array], certai
     image = None
     for case, ax in axes.items():
         image = ax.imshow(ratios[case], cmap="RdBu_r", vmin=-2.0, vmax=2.0)
-        for i, j in zip(*np.nonzero(~certain[case]), strict=True):
-            if i != j:
-                ax.plot(j, i, "x", color="#555555", markersize=4, markeredgewidth=0.8)
+        for i, j in itertools.permutations(range(len(names)), 2):
+            dark = abs(ratios[case][i, j]) > 1.2
+            colour = ("white" if dark else "black") if certain[case][i, j] else "#8a8a8a"
+            size = min(8.0, 60.0 / len(names))
+            ax.text(j, i, times(ratios[case][i, j]), color=colour, fontsize=size, ha="center", va="center")
         ax.set_xticks(range(len(names)), names, rotation=90, fontsize="x-small")
         ax.set_yticks(range(len(names)), names, fontsize="x-small")
         ax.tick_params(length=0)
     if image is not None:
         bar = canvas.colorbar(image, ax=list(axes.values()), shrink=0.7, location="right")
         bar.set_ticks([-2, -1, 0, 1, 2], labels=["100x less", "10x less", "equal", "10x more", "100x more"])
+
+
+def times(exponent: float) -> str:
+    """10 to a power, in at most four letters."""
+    value = 10.0**exponent
+    return f"{value:.0f}" if value >= 9.95 else f"{value:.1f}" if value >= 0.995 else f"{value:.2g}".lstrip("0")[:4]
 
 
 def _labelled(canvas: Any, axes: Mapping[str, Any], x: str, y: str, legend: bool = True) -> None:

@@ -103,7 +103,8 @@ def _cells(table: Table, kinds: Sequence[str], row: Sequence[Value]) -> str:
 
 
 def _figure(figure: Figure) -> str:
-    return f'<figure id="{figure.name}">\n{svg(figure)}\n<figcaption>{_code(figure.caption)}</figcaption></figure>'
+    drawn = f'<figure id="{figure.name}">\n{svg(figure)}\n<figcaption>{_code(figure.caption)}</figcaption></figure>'
+    return drawn if figure.shown else f"<details><summary>{_code(figure.caption)}</summary>\n{drawn}</details>"
 
 
 def svg(figure: Figure) -> str:

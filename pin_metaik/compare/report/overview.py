@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
 from pin_metaik.compare.methods.cost import FK_WITH_JACOBIAN
 from pin_metaik.compare.report import figures
 from pin_metaik.compare.report.parts import Column, Figure, Section, Table, Value
-from pin_metaik.compare.results.results import Results, Summary, summarise
+from pin_metaik.compare.results.results import Results, Summary
+from pin_metaik.compare.results.standing import Place, costs, foremost, standing
 from pin_metaik.compare.results.statistics import compare_pairs, ecdf, friedman
 
 POINTS = 240  # of a distribution's drawing
@@ -18,10 +19,21 @@ SPENT = (
     Column("solved", ".1%", meter=True),
     Column("95 % interval"),
     Column("evaluations, median", ",.0f"),
-    Column("p95", ",.0f"),
+    Column("evaluations, 95th percentile", ",.0f"),
     Column("CPU ms, median", ".2f"),
-    Column("p95", ".2f"),
+    Column("CPU ms, 95th percentile", ".2f"),
 )
+
+RANKED = (Column("method"), Column("mean rank by evaluations", ".2f"), *SPENT)
+DEFAULTS = {"default", "default_nearest"}
+TWO_DEFAULTS = (
+    "`default` and `default_nearest` answer different questions: the first is `solve_ik` without settings, which "
+    "returns any solution; the second asks for the one nearest to the start. Where only the nearest counts "
+    "(`minimal_displacement`), `default_nearest` is the call to make, and `default` shows how often any solution will "
+    "do."
+)
+LINES = 6
+"""Methods in a figure of lines that a page opens with."""
 
 
 def spent(summary: Summary) -> tuple[Value, ...]:
@@ -44,25 +56,25 @@ def in_words(p: float) -> str:
 
 def overview(results: Results) -> Section:
     """How every method fared, over all robots and cases."""
-    costs = np.concatenate([results.costs(case) for case in results.cases])
-    test = friedman(costs)
-    ranks = dict(zip(results.rankable, test.ranks.tolist(), strict=True))
-    summaries = {method: summarise(results.rows(method=method)) for method in results.methods}
-    order = sorted(results.methods, key=lambda m: (ranks.get(m, np.inf), -summaries[m].rate))
-    rows = [(method, ranks.get(method), *spent(summaries[method])) for method in order]
-    table = Table(
-        "overview",
-        "All robots and cases together, the best mean rank first",
-        (Column("method"), Column("mean rank", ".2f"), *SPENT),
-        rows,
-    )
-    text = (
-        "Evaluations are those of the solved trials, processor time that of all. The rank is by evaluations to "
-        "solution on each task, 1 being the best; methods that did not solve it share the last place. Where no target "
-        "can be met, solved means that the method said so, and all that did share the first place.",
+    test = friedman(costs(results))
+    places = standing(results)
+    table = Table("overview", "All robots and cases together", RANKED, ranked(places))
+    text: tuple[str, ...] = (
+        "Methods that solve as many trials as the best one, to one in a hundred, are ordered by their rank; the "
+        "others follow by the share they solve. The rank is by evaluations to solution on each task, 1 being the best; "
+        "methods that did not solve it share the last place. Evaluations are those of the solved trials, processor "
+        "time that of all. Where no target can be met, solved means that the method said so, and all that did share "
+        "the first place.",
         f"Friedman's test over {test.blocks:,} tasks: chi squared = {test.statistic:.4g}, {in_words(test.p)}.",
     )
+    if set(results.methods) >= DEFAULTS:
+        text += (TWO_DEFAULTS,)
     return Section("In short", text, (table,), distributions(results))
+
+
+def ranked(places: Sequence[Place]) -> list[tuple[Value, ...]]:
+    """Rows of the columns ``RANKED``."""
+    return [(place.method, place.rank, *spent(place.summary)) for place in places]
 
 
 def distributions(results: Results, name: str = "ecdf") -> tuple[Figure, ...]:
@@ -73,15 +85,24 @@ def distributions(results: Results, name: str = "ecdf") -> tuple[Figure, ...]:
     shares = {
         case: {method: ecdf(results.spent(case, method), at) for method in results.rankable} for case in results.cases
     }
-
-    def draw(canvas: Any) -> None:
-        figures.distributions(canvas, shares, at, figures.lines(results.methods))
-
+    looks, size = figures.lines(results.methods, thick=DEFAULTS), figures.panel_size(len(shares))
+    few = [m for m in foremost(standing(results), sorted(DEFAULTS), LINES) if m in results.rankable]
+    some = {case: {method: of_case[method] for method in few} for case, of_case in shares.items()}
     caption = (
-        "Share of trials solved within so many kernel evaluations (higher and farther left is better). Colour says "
+        "Share of trials solved within so many kernel evaluations: higher and farther left is better. Colour says "
         "where starts come from, the style of the line what follows."
     )
-    return (Figure(name, caption, draw, figures.panel_size(len(shares))),)
+    opened = Figure(name, caption, lambda canvas: figures.distributions(canvas, some, at, looks), size)
+    if len(few) == len(results.rankable):
+        return (opened,)
+    every = Figure(
+        f"{name}_all",
+        f"The same for all {len(results.rankable)} methods.",
+        lambda canvas: figures.distributions(canvas, shares, at, looks),
+        size,
+        shown=False,
+    )
+    return opened, every
 
 
 def winners(results: Results) -> Section:
@@ -89,34 +110,32 @@ def winners(results: Results) -> Section:
     rows: list[tuple[Value, ...]] = []
     for case in results.cases:
         for robot in results.robots:
-            costs = results.costs(case, robot)
-            if not len(costs):
+            table, names = results.costs(case, robot), results.rankable
+            if not len(table):
                 continue
-            ranks = friedman(costs).ranks
-            best = int(np.argmin(ranks))
-            others = [i for i in range(len(ranks)) if i != best]
-            names = results.rankable
-            pairs = compare_pairs([(names[i], names[best], costs[:, i], costs[:, best]) for i in others])
-            equals = ", ".join(pair.a for pair in pairs if not pair.significant) or "nobody"
-            rates = {
-                method: summarise(results.rows(robot=robot, case=case, method=method)).rate
-                for method in results.methods
-            }
+            places = standing(results, robot=robot, case=case)
+            first = next(place for place in places if place.rank is not None)
+            best = names.index(first.method)
+            others = [i for i in range(len(names)) if i != best]
+            pairs = compare_pairs([(names[i], names[best], table[:, i], table[:, best]) for i in others])
+            equals = ", ".join(pair.a for pair in pairs if not pair.significant) or "none"
+            rates = {place.method: place.summary.rate for place in places}
             least = min(rates.values())
             losers = ", ".join(method for method, rate in rates.items() if rate == least) if least < 1.0 else None
-            rows.append((case, robot, names[best], rates[names[best]], equals, losers, least))
+            rows.append((case, robot, first.method, first.summary.rate, equals, losers, least))
     columns = (
         Column("case"),
         Column("robot"),
         Column("winner"),
-        Column("winner's rate", ".1%"),
-        Column("not significantly different"),
-        Column("solved least"),
-        Column("their rate", ".1%"),
+        Column("share the winner solves", ".1%"),
+        Column("not significantly different from it"),
+        Column("fewest solved by"),
+        Column("share these solve", ".1%"),
     )
     text = (
-        "The winner has the best mean rank by evaluations to solution. Not significantly different: methods that "
-        "differ from it with p >= 0.05 in Wilcoxon's signed-rank test, by Holm for all methods at once.",
+        "The winner has the best mean rank by evaluations, of the methods that solve as many trials as the best one, "
+        "to one in a hundred. Not significantly different from it: methods with p >= 0.05 in Wilcoxon's signed-rank "
+        "test of the evaluations, by Holm for all methods at once.",
     )
     return Section("Winners and losers", text, (Table("winners", "By case and robot", columns, rows),))
 

@@ -58,12 +58,14 @@ class Figure:
         caption: One sentence on its contents.
         draw: Draws into an empty ``matplotlib.figure.Figure``; needs the extra ``plots``.
         size: Width and height in inches.
+        shown: Whether a page opens with it; otherwise it is folded away.
     """
 
     name: str
     caption: str
     draw: Callable[[Any], None]
     size: tuple[float, float] = (9.0, 4.0)
+    shown: bool = True
 
 
 @dataclass(frozen=True)
