@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 
-.PHONY: demo test lint tests quick urdf wheel check-release clean
+.PHONY: demo test lint tests quick urdf docs wheel check-release clean
 
 demo: $(VENV)/installed
 	$(BIN)/pin-metaik demo
@@ -25,6 +25,12 @@ quick: $(VENV)/developed
 urdf: $(VENV)/installed
 	$(BIN)/pin-metaik urdf --all
 
+# The site, in build/docs: every example is run, warnings are errors, internal links and pictures are checked.
+docs: $(VENV)/documented
+	$(BIN)/python -m sphinx -c docs -b html --fail-on-warning --keep-going --quiet . build/docs
+	$(BIN)/python docs/links.py build/docs
+	@echo "open build/docs/index.html"
+
 # The sdist, and a wheel for this platform and this Python with machine code in it.
 wheel: $(VENV)/developed
 	rm -rf dist
@@ -45,4 +51,8 @@ $(VENV)/installed: pyproject.toml
 
 $(VENV)/developed: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --editable ".[dev]"
+	touch $@
+
+$(VENV)/documented: $(VENV)/installed
+	$(BIN)/python -m pip install --quiet --editable ".[docs]"
 	touch $@

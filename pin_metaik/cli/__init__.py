@@ -13,6 +13,7 @@ from typer.core import TyperGroup
 from pin_metaik import __version__
 from pin_metaik.cli import compare, demo, mobile, reproduce, robots, solve, stewart, warm
 from pin_metaik.cli.codes import INTERRUPTED, NONSENSE
+from pin_metaik.cli.examples import show_examples
 from pin_metaik.cli.mobile.plan import plan
 from pin_metaik.cli.options import ManyValues
 from pin_metaik.errors import MetaIKError
@@ -33,7 +34,6 @@ app = typer.Typer(
     name="pin-metaik",
     cls=Commands,
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
@@ -49,6 +49,7 @@ app.command("plan")(plan)
 app.command("warm")(warm.warm)
 app.add_typer(mobile.app, name="mobile")
 app.add_typer(stewart.app, name="stewart")
+show_examples(app)
 
 
 def _version(wanted: bool) -> None:

@@ -12,8 +12,9 @@ import typer
 from rich.console import Console
 
 from pin_metaik.cli.codes import INTERRUPTED
-from pin_metaik.cli.options import split
+from pin_metaik.cli.options import Json, split
 from pin_metaik.cli.progress import progress_bar
+from pin_metaik.cli.versions import print_json
 from pin_metaik.compare import CASES, Suite, write_report
 from pin_metaik.compare import compare as run
 from pin_metaik.compare import replay as again
@@ -45,6 +46,7 @@ def compare(
     jobs: Annotated[int, typer.Option(help="Processes, 1 or more; -1: one a core. The rows do not depend on it.")] = 1,
     backend: Annotated[Backend, typer.Option(help="Processes here, or a Dask cluster.")] = Backend.LOKY,
     scheduler: Annotated[str | None, typer.Option(help="Of the Dask cluster, e.g. tcp://localhost:8786.")] = None,
+    as_json: Json = False,
 ) -> None:
     """Compare methods on hard cases at equal budgets. Ctrl-C loses nothing: the same command goes on."""
     sys.path.insert(0, "")  # module:object may be in the folder one is in
@@ -54,16 +56,24 @@ def compare(
         outcome = kept(
             lambda: run(suite, out, jobs=jobs, backend=backend.value, scheduler=scheduler, command=command, watch=watch)
         )
-    console = Console(highlight=False)
-    console.print(str(outcome), style="yellow" if outcome.partial else None, markup=False, soft_wrap=True)
-    console.print(f"next: pin-metaik report {out}", markup=False, soft_wrap=True)
+    if as_json:
+        print_json(outcome.as_dict())
+    else:
+        console = Console(highlight=False)
+        console.print(str(outcome), style="yellow" if outcome.partial else None, markup=False, soft_wrap=True)
+        console.print(f"next: pin-metaik report {out}", markup=False, soft_wrap=True)
     raise typer.Exit(INTERRUPTED if outcome.partial else 0)
 
 
-def report(folder: Annotated[Path, typer.Argument(help="Folder of a comparison, finished or not.")]) -> None:
+def report(
+    folder: Annotated[Path, typer.Argument(help="Folder of a comparison, finished or not.")], as_json: Json = False
+) -> None:
     """Write the report on a comparison: one HTML page, and Markdown with tables and figures beside it."""
     with Console(stderr=True).status(f"writing the report on {folder} ..."):
         page, markdown, *others = write_report(folder)
+    if as_json:
+        print_json({"page": str(page), "files": [str(file) for file in (markdown, *others)]})
+        return
     print(page)
     print(markdown, f"and {len(others)} tables and figures")
 
@@ -71,11 +81,15 @@ def report(folder: Annotated[Path, typer.Argument(help="Folder of a comparison, 
 def replay(
     folder: Annotated[Path, typer.Argument(help="Folder of a comparison.")],
     trial: Annotated[str, typer.Argument(help="ROBOT/CASE/TASK/METHOD/SEED, as the report lists them.")],
+    as_json: Json = False,
 ) -> None:
     """Run one trial of a comparison again. Exit code 0: it ends as the row says, 1: it does not."""
     sys.path.insert(0, "")
     replayed = again(folder, trial)
-    console = Console(highlight=False)
-    for line in replayed.lines():
-        console.print(line, markup=False, soft_wrap=True)
+    if as_json:
+        print_json(replayed.as_dict())
+    else:
+        console = Console(highlight=False)
+        for line in replayed.lines():
+            console.print(line, markup=False, soft_wrap=True)
     raise typer.Exit(0 if replayed.same else 1)

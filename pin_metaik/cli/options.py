@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from typing import Any
+from typing import Annotated, Any
 
+import typer
 from typer.core import TyperCommand
+
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 
 
 class ManyValues(TyperCommand):

@@ -9,25 +9,65 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from pin_metaik.cli import complete
+from pin_metaik.cli.options import Json
+from pin_metaik.cli.versions import print_json
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.kinematics import Chain
 from pin_metaik.output import writable
-from pin_metaik.robots import load_robot, robot_names, write_urdfs
+from pin_metaik.robots import RobotName, load_robot, robot_names, write_urdfs
+
+MANY = 9
+"""Coordinates from which on little is proved unreachable; see ``solve_ik``."""
 
 
 def robots(
     words: Annotated[list[str] | None, typer.Argument(help="Only those that hold all of these words.")] = None,
+    as_json: Json = False,
 ) -> None:
-    """List the robots that can be loaded by name."""
-    table = Table("robot", "from", "joints", "default frame", box=None)
-    for robot in robot_names():
-        if not all(word.lower() in f"{robot.name} {robot.source} {robot.frame}".lower() for word in words or ()):
-            continue
-        table.add_row(robot.name, robot.source, str(robot.dof), robot.frame)
+    """List the robots that can be loaded by name: joints, tip, closed form, and what is proved of a pose.
+
+    Joints are those of the model, and those that place the tip. `closed form`, `boxes` and `count` are how it is proved
+    that a pose is unreachable, and that all solutions of one that is reachable are found.
+    """
+    named = [
+        robot
+        for robot in robot_names()
+        if all(word.lower() in f"{robot.name} {robot.source} {robot.frame}".lower() for word in words or ())
+    ]
+    rows = [{"robot": robot.name, "source": robot.source, **known(robot)} for robot in named]
+    if as_json:
+        print_json({"robots": rows})
+        return
+    headings = ("robot", "from", "joints", "to the tip", "tip", "closed form", "unreachable", "all solutions")
+    table = Table(*headings, box=None)
+    for row in rows:
+        table.add_row(*("yes" if value is True else "" if value is False else str(value) for value in row.values()))
     Console().print(table)
 
 
+def known(robot: RobotName) -> dict[str, object]:
+    """Numbers of joints, tip, whether there is a closed form, and what proves the two kinds of answers."""
+    chain = Chain(load_robot(robot).model, robot.frame)
+    closed = len(chain.form) > 0
+    unreachable = "closed form" if closed else "boxes" if chain.n < MANY else "little"
+    complete_by = {6: "count or boxes", 7: "boxes, as curves"}
+    every = "closed form" if closed else "boxes" if chain.n < 6 else complete_by.get(chain.n, "none")
+    return {
+        "joints": robot.dof,
+        "joints_to_tip": chain.n,
+        "tip": robot.frame,
+        "closed_form": closed,
+        "unreachable_proved_by": unreachable,
+        "all_solutions_proved_by": every,
+    }
+
+
 def urdf(
-    robot: Annotated[str | None, typer.Argument(help="A robot's name, or the path of a DH table (.toml).")] = None,
+    robot: Annotated[
+        str | None,
+        typer.Argument(help="A robot's name, or the path of a DH table (.toml).", autocompletion=complete.robots),
+    ] = None,
     output: Annotated[Path | None, typer.Option("--output", "-o", help="File to write; default: print it.")] = None,
     every: Annotated[bool, typer.Option("--all", help="Write the whole catalogue to a folder: -o, or urdf/.")] = False,
 ) -> None:

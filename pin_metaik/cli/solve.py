@@ -13,7 +13,9 @@ import typer
 from numpy.typing import NDArray
 from rich.console import Console
 
-from pin_metaik.cli.options import split
+from pin_metaik.cli import complete
+from pin_metaik.cli.options import Json, split
+from pin_metaik.cli.show import show_in_browser
 from pin_metaik.cli.start import configuration, turns
 from pin_metaik.cli.versions import print_json
 from pin_metaik.collision import CollisionWorld, load_scene, scene_names
@@ -34,7 +36,12 @@ SEEDERS = f"auto, none, {', '.join(ALGORITHMS)}"
 
 
 def solve(
-    robot: Annotated[str, typer.Argument(help="A robot's name (see `robots`), or the path of a .urdf or DH .toml.")],
+    robot: Annotated[
+        str,
+        typer.Argument(
+            help="A robot's name (see `robots`), or the path of a .urdf or DH .toml.", autocompletion=complete.robots
+        ),
+    ],
     position: Annotated[
         tuple[float, float, float] | None, typer.Option(metavar="X Y Z", help="Target position in metres.")
     ] = None,
@@ -81,11 +88,17 @@ def solve(
     ] = True,
     margin: Annotated[float | None, typer.Option(help="Distance to keep from everything in the world, m.")] = None,
     picture: Annotated[
-        Path | None, typer.Option(help="Draw the arm at the solution, or at the nearest found: .png, .svg or .pdf.")
+        Path | None,
+        typer.Option(
+            "--plot", "--picture", help="Draw the arm at the solution, or at the nearest found: .png, .svg or .pdf."
+        ),
     ] = None,
+    in_browser: Annotated[
+        bool, typer.Option("--show", help="Show the robot there in the browser, until Ctrl-C; needs the extra viewer.")
+    ] = False,
     rng: Annotated[int, typer.Option(min=0, help="Seed of every random choice.")] = 0,
     in_degrees: Annotated[bool, typer.Option("--degrees", help="Angles in degrees, given and shown.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    as_json: Json = False,
 ) -> None:
     """Solve for one target. Exit code 0: solved, 1: not solved, 2: the call makes no sense."""
     if position is None and rpy is None:
@@ -109,14 +122,16 @@ def solve(
         warn("--rpy is in radians; for degrees give --degrees, too")
     _warm_up(chain, target, solver)
     result = solve_ik(chain, target, start, solver=solver, world=obstacles, rng=rng)
+    there = position if rpy is None or position is None else target.pose  # without a position: nowhere to draw
     if picture is not None:
-        there = position if rpy is None or position is None else target.pose  # without a position: nowhere to draw
         save_arm(picture, chain, result.q, there, obstacles)
     if as_json:
         units = {"length": "m", "angle": "deg" if in_degrees else "rad", "orientation_error": "rad", "time": "s"}
         print_json(report(loaded.name, chain, result, in_degrees), units)
     else:
         show(loaded.name, chain, result, in_degrees)
+    if in_browser:
+        show_in_browser(loaded, chain.frames[0], result.q, there, obstacles)
     raise typer.Exit(0 if result.success else 1)
 
 

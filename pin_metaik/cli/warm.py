@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from pin_metaik.cli.options import Json
+from pin_metaik.cli.versions import print_json
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.notice import notice
 from pin_metaik.robots import load_robot
@@ -14,6 +16,7 @@ from pin_metaik.robots import load_robot
 
 def warm(
     robot: Annotated[list[str] | None, typer.Option(help="Robots whose meshes are simplified, too.")] = None,
+    as_json: Json = False,
 ) -> None:
     """Compile every loop, and say what was done and how long it took. Loops compiled earlier are left alone."""
     from pin_metaik.compiled import ahead
@@ -27,12 +30,22 @@ def warm(
         with notice(f"compiling {len(todo)} loops, kept in {folder}", len(todo)) as line:
             for _ in ahead.each(ahead.Version.compile, todo):
                 line.step()
-        print(f"compiled {len(todo)} of {len(loops)} loops in {time.perf_counter() - began:.1f} s, kept in {folder}")
-    else:
-        print(f"all {len(loops)} loops are there")
-    for why in missing:
-        print(f"left out: {why}")
+    seconds = {"loops": time.perf_counter() - began}
     for each in robots:
         began = time.perf_counter()
         CollisionWorld(each).checker  # noqa: B018  # made when first looked at
-        print(f"meshes of {each.name}: {time.perf_counter() - began:.1f} s")
+        seconds[each.name] = time.perf_counter() - began
+    if as_json:
+        done = {"loops": len(loops), "compiled": len(todo), "folder": str(folder), "left_out": list(missing)}
+        print_json({**done, "seconds": seconds})
+        return
+    spent = seconds.pop("loops")
+    print(
+        f"compiled {len(todo)} of {len(loops)} loops in {spent:.1f} s, kept in {folder}"
+        if todo
+        else f"all {len(loops)} loops are there"
+    )
+    for why in missing:
+        print(f"left out: {why}")
+    for name, took in seconds.items():
+        print(f"meshes of {name}: {took:.1f} s")

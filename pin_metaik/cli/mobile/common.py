@@ -67,7 +67,6 @@ VehicleName = Annotated[
 ]
 FitnessName = Annotated[str, typer.Option(help="What a metaheuristic minimises: exact or paper (its Eq. 5).")]
 Rng = Annotated[int, typer.Option(min=0, help="Seed of every random choice.")]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 
 
 @dataclass(frozen=True)

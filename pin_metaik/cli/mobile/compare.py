@@ -17,7 +17,6 @@ from pin_metaik.cli.mobile.common import (
     FITNESS,
     FitnessName,
     Goal,
-    Json,
     Rng,
     Start,
     can_write,
@@ -27,7 +26,7 @@ from pin_metaik.cli.mobile.common import (
     read_scene,
     say_written,
 )
-from pin_metaik.cli.options import split
+from pin_metaik.cli.options import Json, split
 from pin_metaik.cli.progress import progress_bar
 from pin_metaik.compare.planners.report import sections
 from pin_metaik.compare.planners.run import compare_planners

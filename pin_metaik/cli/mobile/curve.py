@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.console import Console
 
-from pin_metaik.cli.mobile.common import Json, Pose, print_report, read_scene, say_written
+from pin_metaik.cli.mobile.common import Pose, print_report, read_scene, say_written
+from pin_metaik.cli.options import Json
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.figures import picture_file
 from pin_metaik.output import writable

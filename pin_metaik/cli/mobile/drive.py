@@ -13,7 +13,6 @@ from rich.console import Console
 
 from pin_metaik.cli.mobile.common import (
     Goal,
-    Json,
     SceneName,
     VehicleName,
     can_write,
@@ -22,6 +21,7 @@ from pin_metaik.cli.mobile.common import (
     say_written,
     state_of,
 )
+from pin_metaik.cli.options import Json
 from pin_metaik.errors import InvalidSetting
 
 if TYPE_CHECKING:

@@ -10,7 +10,8 @@ import typer
 from rich.console import Console
 
 from pin_metaik.cli.codes import INTERRUPTED
-from pin_metaik.cli.mobile.common import Json, Rng, VehicleName, print_report, say_written
+from pin_metaik.cli.mobile.common import Rng, VehicleName, print_report, say_written
+from pin_metaik.cli.options import Json
 from pin_metaik.cli.progress import progress_bar
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.interrupts import kept

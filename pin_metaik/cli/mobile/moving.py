@@ -12,13 +12,13 @@ from rich.console import Console
 from pin_metaik.cli.mobile.common import (
     Goal,
     Join,
-    Json,
     SceneName,
     Start,
     print_report,
     read_scene,
     say_written,
 )
+from pin_metaik.cli.options import Json
 from pin_metaik.cli.progress import progress_bar
 from pin_metaik.figures import picture_file
 from pin_metaik.output import writable

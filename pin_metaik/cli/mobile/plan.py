@@ -19,7 +19,6 @@ from pin_metaik.cli.mobile.common import (
     FitnessName,
     Goal,
     Join,
-    Json,
     Resolution,
     Rng,
     SceneName,
@@ -37,6 +36,7 @@ from pin_metaik.cli.mobile.common import (
     say_written,
     warm_up,
 )
+from pin_metaik.cli.options import Json
 from pin_metaik.cli.progress import progress_bar
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.interrupts import kept

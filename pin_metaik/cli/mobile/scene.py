@@ -13,7 +13,6 @@ from pin_metaik.cli.mobile.common import (
     Cells,
     Goal,
     Join,
-    Json,
     Resolution,
     SceneName,
     Specks,
@@ -24,6 +23,7 @@ from pin_metaik.cli.mobile.common import (
     read_scene,
     say_written,
 )
+from pin_metaik.cli.options import Json
 from pin_metaik.figures import picture_file
 from pin_metaik.output import writable
 

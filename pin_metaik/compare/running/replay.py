@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from pin_metaik.compare.trials.suite import pair_name
 from pin_metaik.compare.trials.trial import Trial
 from pin_metaik.compare.trials.work_item import WorkItem
 from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.plain import plain
 
 ROWS = ("rotation", "", "")  # the word stands before the first row of a matrix
 
@@ -37,6 +39,11 @@ class Replay:
     def same(self) -> bool:
         """Whether both are equal, times aside."""
         return self.row is None or self.row.reproducible == self.trial.reproducible
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON: the new row, the stored one, and whether they are the same."""
+        row = None if self.row is None else plain(asdict(self.row))
+        return {"name": self.trial.name, "same": self.same, "trial": plain(asdict(self.trial)), "row": row}
 
     def lines(self) -> Iterator[str]:
         """Lines to print."""
