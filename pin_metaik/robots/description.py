@@ -19,6 +19,7 @@ from pin_metaik.errors import InvalidModel
 from pin_metaik.optimize.settings import one_of
 from pin_metaik.robots import plausible
 from pin_metaik.robots.couplings import NO_COUPLINGS, coupled, make_ready, read_couplings, with_own_names
+from pin_metaik.robots.loops import Loops, equalities_not_read, read_loops
 from pin_metaik.robots.prints import caught_prints, explain
 from pin_metaik.robots.spelling import misspelt
 from pin_metaik.robots.text import outermost, parsed
@@ -31,7 +32,6 @@ KINDS: dict[Shapes, pin.GeometryType] = {
     "visual": pin.GeometryType.VISUAL,
 }
 _CARRY_NUMBERS = ("link", "joint", "origin", "axis", "limit", "parent", "child", "mimic")
-_NOT_READ = ("equality", "include")  # of MJCF
 
 
 @checked_as(InvalidModel)
@@ -119,6 +119,13 @@ class Description:
             return tuple(read_couplings(motion, self.what).broken)
         return tuple(j.get("name", "") for j in motion.iterfind("joint[mimic]") if j.get("type") != "fixed")
 
+    def loops(self) -> Loops:
+        """The closed loops of an MJCF, as Pinocchio's constraints; a URDF is a tree."""
+        if not self.is_mjcf:
+            return ()
+        with self._file() as path, caught_prints():
+            return read_loops(path, self.text)
+
     def _root(self) -> tuple[pin.JointModel, ...]:
         return () if self.base == "fixed" else (ROOTS[self.base](),)
 
@@ -174,7 +181,8 @@ class Description:
                 why = (prints() or explain(error)).replace(path, self.what)
                 raise InvalidModel(f"{self.what} is not MJCF that can be read: {why}") from None
             printed = list(filter(None, [prints()]))
-        left = [f"{self.what} has <{name}>, which is not read" for name in _NOT_READ if f"<{name}" in self.text]
+        names = [f"equality><{kind}" for kind in equalities_not_read(self.text)] + ["include"] * ("<include" in self.text)
+        left = [f"{self.what} has <{name}>, which is not read" for name in names]
         return model, [*left, *printed]
 
     def _mjcf_geometry(self, model: pin.Model, shapes: Shapes) -> pin.GeometryModel:

@@ -14,6 +14,7 @@ from pin_metaik.arguments import checked_as
 from pin_metaik.errors import InvalidModel, InvalidTable, UnknownName
 from pin_metaik.robots.description import Base, Description
 from pin_metaik.robots.library import LEFT_OUT, TIPS, catalogue, example_robots
+from pin_metaik.robots.loops import Loops
 from pin_metaik.robots.plausible import angles_in_radians
 from pin_metaik.robots.table import read_table
 from pin_metaik.robots.text import read_text
@@ -81,6 +82,11 @@ class Robot:
     def free_mimics(self) -> tuple[str, ...]:
         """Joints that should follow another one by the URDF, but are free in the model."""
         return self.description.free_mimics()
+
+    @cached_property
+    def loops(self) -> Loops:
+        """Closed loops of its MJCF, which the model, a tree, leaves open: ``goals.Loop`` of each closes it."""
+        return self.description.loops()
 
     def _geometry(self, shapes: Shapes) -> pin.GeometryModel:
         geometry, remarks = self.description.geometry(self.model, shapes)
