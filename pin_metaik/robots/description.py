@@ -181,7 +181,9 @@ class Description:
                 why = (prints() or explain(error)).replace(path, self.what)
                 raise InvalidModel(f"{self.what} is not MJCF that can be read: {why}") from None
             printed = list(filter(None, [prints()]))
-        names = [f"equality><{kind}" for kind in equalities_not_read(self.text)] + ["include"] * ("<include" in self.text)
+        names = [f"equality><{kind}" for kind in equalities_not_read(self.text)] + ["include"] * (
+            "<include" in self.text
+        )
         left = [f"{self.what} has <{name}>, which is not read" for name in names]
         return model, [*left, *printed]
 

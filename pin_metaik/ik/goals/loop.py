@@ -105,11 +105,11 @@ class Loop(Posed):
 
     def _placement(self, at: Placed) -> pin.SE3:
         instance(Placed, at=at)
-        first, second = (at.on_joint(*end) for end in self._ends)
+        first, second = (at._on_joint(*end) for end in self._ends)
         return first.actInv(second)
 
     def _speeds(self, at: Placed) -> Array:
-        first, second = ((at.on_joint(*end), at.jacobian_on_joint(*end)) for end in self._ends)
+        first, second = ((at._on_joint(*end), at._jacobian_on_joint(*end)) for end in self._ends)
         return relative(*second, *first)
 
 

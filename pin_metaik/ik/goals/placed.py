@@ -87,16 +87,16 @@ class Placed:
         """The same of a frame as another one sees it."""
         return relative(self.pose(frame), self.jacobian(frame), self.pose(reference), self.jacobian(reference))
 
-    def on_joint(self, joint: int, placement: pin.SE3) -> pin.SE3:
+    def _on_joint(self, joint: int, placement: pin.SE3) -> pin.SE3:
         """World pose of a frame that is fixed to a joint, by its number, at a placement in the joint's frame."""
         return self._joint_poses[joint] * placement
 
-    def jacobian_on_joint(self, joint: int, placement: pin.SE3) -> Array:
+    def _jacobian_on_joint(self, joint: int, placement: pin.SE3) -> Array:
         """Velocity (6, n) of the same by the coordinates of the chain, along the axes of the world."""
         if joint == 0:  # the world
             return np.zeros((6, self.chain.n))
         J = self._by_coordinates(pin.computeJointJacobian(self.chain.model, self.chain.data, self.q, joint))
-        R, local = self.on_joint(joint, placement).rotation, placement.toActionMatrixInverse() @ J
+        R, local = self._on_joint(joint, placement).rotation, placement.toActionMatrixInverse() @ J
         return np.concatenate([R @ local[:3], R @ local[3:]])
 
     @cached_property
