@@ -20,6 +20,7 @@ from pin_metaik.optimize.settings import one_of
 from pin_metaik.robots import plausible
 from pin_metaik.robots.couplings import NO_COUPLINGS, coupled, make_ready, read_couplings, with_own_names
 from pin_metaik.robots.loops import Loops, equalities_not_read, read_loops
+from pin_metaik.robots.macros import sign_of_xacro
 from pin_metaik.robots.prints import caught_prints, explain
 from pin_metaik.robots.spelling import misspelt
 from pin_metaik.robots.text import outermost, parsed
@@ -31,7 +32,6 @@ KINDS: dict[Shapes, pin.GeometryType] = {
     "collision": pin.GeometryType.COLLISION,
     "visual": pin.GeometryType.VISUAL,
 }
-_CARRY_NUMBERS = ("link", "joint", "origin", "axis", "limit", "parent", "child", "mimic")
 
 
 @checked_as(InvalidModel)
@@ -105,9 +105,10 @@ class Description:
             InvalidModel: If it is not a URDF: other XML, not well-formed, or xacro that was not expanded.
         """
         if outermost(self.text) == "sdf":
-            raise InvalidModel(f"{self.what} is SDF, which Pinocchio's wheels cannot read: convert it to URDF")
+            raise InvalidModel(f"{self.what} is SDF, which Pinocchio's wheels cannot read: convert it to URDF or MJCF")
         tree = parsed(self.text, self.what)
-        _refuse_xacro(tree, self.what)
+        if sign := sign_of_xacro(tree):
+            raise InvalidModel(f"{self.what} is xacro that was not expanded: it has {sign}; run xacro on it first")
         return tree
 
     def free_mimics(self) -> tuple[str, ...]:
@@ -213,13 +214,3 @@ _MADE_FROM: WeakKeyDictionary[pin.Model, Description] = WeakKeyDictionary()
 def description_of(model: pin.Model) -> Description | None:
     """The source of a model, or None if it is not one of ``Description.model``."""
     return _MADE_FROM.get(model)
-
-
-def _refuse_xacro(tree: ET.Element, what: str) -> None:
-    """Xacro is a language of macros, which a URDF parser does not expand."""
-    for element in tree.iter():
-        signs = [f"<{element.tag}>"] if element.tag.startswith("xacro:") else []
-        if not signs and element.tag in _CARRY_NUMBERS:
-            signs = [f'{key}="{value}"' for key, value in element.attrib.items() if "${" in value or "$(" in value]
-        if signs:
-            raise InvalidModel(f"{what} is xacro that was not expanded: it has {signs[0]}; run xacro on it first")
