@@ -135,7 +135,7 @@ def robot_names() -> list[RobotName]:
 def load_robot(
     name: str | Path | RobotName | ModuleType,
     *,
-    parameters: Mapping[str, float | str] | None = None,
+    parameters: Mapping[str, float | str | bool] | None = None,
     free_flyer: bool = False,
     planar: bool = False,
     mimic: bool = True,
@@ -173,7 +173,7 @@ def load_robot(
 
 
 def _loaded(
-    name: str | Path | ModuleType, parameters: Mapping[str, float | str] | None, base: Base, mimic: bool
+    name: str | Path | ModuleType, parameters: Mapping[str, float | str | bool] | None, base: Base, mimic: bool
 ) -> Robot:
     label, content, srdf = _located(name)
     source, remarks = content if isinstance(content, Path) else None, list[str]()
