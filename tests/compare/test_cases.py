@@ -46,7 +46,15 @@ def least_singular_value(task: Task) -> float:
     return float(np.linalg.svd(J, compute_uv=False)[-1])
 
 
-ANY_ARM = [(name, robot) for name, case in CASES.items() if case.world is None for robot in ROBOTS]
+GOALS = {
+    "look_at": ["panda", "ur5", "pr2"],
+    "cup_upright": ["panda", "ur5", "pr2"],
+    "two_hands": ["pr2", "talos"],
+    "whole_body": ["talos", "solo12", "anymal"],
+}
+ANY_ARM = [
+    (name, robot) for name, case in CASES.items() if case.world is None and name not in GOALS for robot in ROBOTS
+]
 
 
 @pytest.mark.parametrize(("name", "robot"), [*ANY_ARM, ("cluttered", "panda"), ("cluttered", "ur5")])
@@ -198,3 +206,42 @@ def test_a_world_without_room_is_an_error(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr("pin_metaik.compare.cases.case.DRAWS", 20)
     with pytest.raises(NoTask, match="none of 20 tasks is free"):
         case.task(case.chain(robot, np.random.default_rng(0)), walled, np.random.default_rng(0))
+
+
+@pytest.mark.parametrize(("name", "robot"), [(name, robot) for name, some in GOALS.items() for robot in some])
+def test_goals_of_a_case_are_met_by_what_they_were_made_of_and_solved(name: str, robot: str) -> None:
+    case = CASES[name]
+    for task, again in zip(tasks(case, robot), tasks(case, robot), strict=True):
+        assert task.planted is not None and again.planted is not None
+        assert_array_equal(task.planted, again.planted)
+        assert task.chain.limits.contains(task.planted[0])
+        assert case.judge(task, attempt(task, task.planted))
+        anywhere = task.chain.box.sample(np.random.default_rng(0), 1)
+        assert not case.judge(task, attempt(task, anywhere))
+        assert mik.solve_ik(task.chain, task.targets[0]).success
+
+
+@pytest.mark.parametrize(
+    ("name", "robot", "says"),
+    [
+        ("two_hands", "panda", "no counterpart of 'panda_hand_tcp'"),
+        ("whole_body", "ur5", "no two links that are called feet or soles"),
+    ],
+)
+def test_a_robot_without_a_second_hand_or_feet_is_told_so(name: str, robot: str, says: str) -> None:
+    assert says in CASES[name].lacks(mik.load_robot(robot), np.random.default_rng(0))
+
+
+def test_cases_of_goals_are_run_by_metaheuristics_and_by_the_default(tmp_path: Path) -> None:
+    suite = Suite(
+        robots=["panda", "talos"],
+        cases=list(GOALS),
+        methods=["default", "gwo+dls", "mtde+dls", "gwo", "trac_ik"],
+        tasks=1,
+        budget=3000,
+    )
+    rows = run(suite, tmp_path / "goals").all()
+    done = [row for row in rows if row.method != "trac_ik" and not row.error]
+    assert {(row.case, row.robot) for row in done} >= {(name, "talos") for name in GOALS}
+    assert all(row.success for row in done if row.method == "default")
+    assert sum(row.success for row in done if row.method.endswith("+dls")) >= 8
