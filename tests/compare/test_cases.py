@@ -1,6 +1,7 @@
 """Cases: their tasks are what they say, for any arm, and can be done."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -9,9 +10,12 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import pin_metaik as mik
 from pin_metaik.collision import Obstacle, Sphere
-from pin_metaik.compare import CASES, Answer, Attempt, Case, Task
+from pin_metaik.compare import CASES, METHODS, Answer, Attempt, Case, Suite, Task, compare, replay, write_report
 from pin_metaik.compare.cases.case import NoTask
 from pin_metaik.compare.cases.jacobians import jacobians
+from pin_metaik.compare.folder.store import read_rows
+from pin_metaik.compare.methods.peers.peer import Peer
+from pin_metaik.errors import InvalidTarget
 
 ROBOTS = ["panda", "ur5", "rv7fl", "kinova", "pr2"]
 COUNT = 5
@@ -216,7 +220,7 @@ def test_goals_of_a_case_are_met_by_what_they_were_made_of_and_solved(name: str,
         assert_array_equal(task.planted, again.planted)
         assert task.chain.limits.contains(task.planted[0])
         assert case.judge(task, attempt(task, task.planted))
-        anywhere = task.chain.box.sample(np.random.default_rng(0), 1)
+        anywhere = task.chain.box.sample(np.random.default_rng(99), 1)
         assert not case.judge(task, attempt(task, anywhere))
         assert mik.solve_ik(task.chain, task.targets[0]).success
 
@@ -233,15 +237,20 @@ def test_a_robot_without_a_second_hand_or_feet_is_told_so(name: str, robot: str,
 
 
 def test_cases_of_goals_are_run_by_metaheuristics_and_by_the_default(tmp_path: Path) -> None:
-    suite = Suite(
-        robots=["panda", "talos"],
-        cases=list(GOALS),
-        methods=["default", "gwo+dls", "mtde+dls", "gwo", "trac_ik"],
-        tasks=1,
-        budget=3000,
-    )
-    rows = run(suite, tmp_path / "goals").all()
-    done = [row for row in rows if row.method != "trac_ik" and not row.error]
-    assert {(row.case, row.robot) for row in done} >= {(name, "talos") for name in GOALS}
-    assert all(row.success for row in done if row.method == "default")
-    assert sum(row.success for row in done if row.method.endswith("+dls")) >= 8
+    methods = ("default", "gwo+dls", "gwo")
+    outcome = compare(Suite(("panda", "talos"), tuple(GOALS), methods, tasks=1, budget=1000), tmp_path)
+    assert outcome.errors == 0
+    done = read_rows(tmp_path)
+    pairs = {("panda", "look_at"), ("panda", "cup_upright"), *(("talos", name) for name in GOALS)}
+    assert {(row.robot, row.case) for row in done} == pairs
+    assert all(row.solved for row in done if row.method == "default")
+    assert sum(row.solved for row in done if row.method == "gwo+dls") >= 4  # of 6
+    assert "LookAt" in "".join(replay(tmp_path, "panda/look_at/0/gwo/0").lines())
+    assert any("look_at" in page.read_text(encoding="utf-8") for page in write_report(tmp_path) if page.suffix == ".md")
+
+
+def test_a_solver_that_takes_poses_says_so_of_goals() -> None:
+    task = tasks(CASES["look_at"], "ur5")[0]
+    peer = next(method for method in METHODS.values() if isinstance(method, Peer))
+    with pytest.raises(InvalidTarget, match="takes one pose, and no goals of other kinds"):
+        peer.solve(task.problems[0], task.chain.x(task.chain.reference), 100, np.random.default_rng(0))
