@@ -95,6 +95,12 @@ def placed() -> goals.Placed:
     return goals.Placed(chain(), chain().reference)
 
 
+@cache
+def closure() -> pin.PointAnchorConstraintModel:
+    """Of the hand and the upper arm of ur5."""
+    return pin.PointAnchorConstraintModel(chain().model, 6, pin.SE3.Identity(), 2, pin.SE3.Identity())
+
+
 def near(**more: Any) -> dict[str, Any]:
     """What all goals take that are about a number within bounds."""
     return {"tolerance": 1e-3, "weight": 2.0, **more}
@@ -429,6 +435,7 @@ OWNERS: dict[str, Callable[[], Any]] = {
     "mik.Target": lambda: mik.Target(POSE),
     "goals.CentreOfMass": lambda: goals.CentreOfMass(least=0.0),
     "goals.FramePose": lambda: goals.FramePose("tool0", POSE),
+    "goals.Loop": lambda: goals.Loop(closure()),
     "goals.MidRange": lambda: goals.MidRange(0.5),
     "goals.Placed": placed,
     "goals.Posture": lambda: goals.Posture({"elbow_joint": 0.0}),
@@ -599,6 +606,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.IKProblem.branches": lambda: {"x0": np.array(X6)},
     "mik.IKProblem.boxes": lambda: {"t": 0, "least": 1e-3, "split": False},
     "mik.IKProblem.gaps": lambda: {"t": 0},
+    "mik.IKProblem.nearest_turns": lambda: {"X": np.array([X6]), "x0": np.array(X6)},
     "mik.IKProblem.near": lambda: {"count": 3},
     "mik.IKProblem.costs": lambda: {"X": np.array([X6])},
     "mik.IKProblem.verdict": lambda: {"q": np.array(X6)},
@@ -736,12 +744,11 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "tolerance": 1e-5,
     },
     "goals.FramePose.check": lambda: {"chain": chain()},
-    "goals.FramePose.residual": lambda: {"at": placed()},
-    "goals.FramePose.jacobian": lambda: {"at": placed()},
-    "goals.FramePose.met": lambda: {"at": placed()},
-    "goals.FramePose.off": lambda: {"at": placed()},
     "goals.InBox": lambda: seen(lower=(0.0, 0.0, 0.0), upper=(1.0, 1.0, 1.0), pose=POSE),
     "goals.LookAt": lambda: seen(point=(0.3, 0.3, 0.4), axis="z"),
+    "goals.Loop": lambda: {"closure": closure(), "position_tolerance": 1e-3, "orientation_tolerance": 1e-3},
+    "goals.Loop.ends": lambda: {"model": chain().model},
+    "goals.Loop.check": lambda: {"chain": chain()},
     "goals.Manipulability": lambda: seen(least=0.1, of="pose"),
     "goals.MidRange": lambda: near(share=0.5),
     "goals.MidRange.check": lambda: {"chain": chain()},
@@ -989,6 +996,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "robots.DHTable.fk": lambda: {"q": [0.1, 0.2]},
     "robots.Description": lambda: {"text": planar()[2], "source": None, "base": "fixed", "mimic": True},
     "robots.Description.free_mimics": dict,
+    "robots.Description.loops": dict,
     "robots.Description.geometry": lambda: {"model": planar()[0], "shapes": "collision"},
     "robots.Description.read": dict,
     "robots.Description.tree": dict,

@@ -14,23 +14,27 @@ from numpy.typing import NDArray
 from rich.console import Console
 
 from pin_metaik.cli import complete
+from pin_metaik.cli.goals import KINDS, read_goals
 from pin_metaik.cli.options import Json, split
 from pin_metaik.cli.show import show_in_browser
 from pin_metaik.cli.start import configuration, turns
 from pin_metaik.cli.versions import print_json
 from pin_metaik.collision import CollisionWorld, load_scene, scene_names
-from pin_metaik.errors import InvalidSetting, InvalidTarget
+from pin_metaik.errors import InvalidBounds, InvalidSetting, InvalidTarget
 from pin_metaik.figures import picture_file
 from pin_metaik.ik import REFINERS, IKResult, IKSolver, Target, save_arm, solve_ik
+from pin_metaik.ik.goals import Goal, Loop, Wish
 from pin_metaik.ik.solver import EVALUATIONS
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.pose import rpy_matrix
+from pin_metaik.lookup import lookup
 from pin_metaik.optimize import ALGORITHMS, Budget
 from pin_metaik.robots import Robot, load_robot
 from pin_metaik.said import warn
 
 ALONE = "alone"
 """As a scene: the robot with itself, and nothing around it."""
+BASES: dict[str, dict[str, bool]] = {"fixed": {}, "free-flyer": {"free_flyer": True}, "planar": {"planar": True}}
 WARM = Budget(evaluations=64)
 SEEDERS = f"auto, none, {', '.join(ALGORITHMS)}"
 
@@ -39,7 +43,8 @@ def solve(
     robot: Annotated[
         str,
         typer.Argument(
-            help="A robot's name (see `robots`), or the path of a .urdf or DH .toml.", autocompletion=complete.robots
+            help="A robot's name (see `robots`), or the path of a URDF, MJCF, xacro or DH .toml.",
+            autocompletion=complete.robots,
         ),
     ],
     position: Annotated[
@@ -50,14 +55,43 @@ def solve(
         typer.Option(
             "--set",
             metavar="NAME=VALUE",
-            help="A parameter of a DH table, in its units, such as h=10; may be repeated.",
+            help="A parameter of a DH table, in its units, such as h=10, or an argument of xacro; may be repeated.",
         ),
     ] = None,
     rpy: Annotated[
         tuple[float, float, float] | None,
         typer.Option(metavar="R P Y", help="Target orientation Rz(Y) Ry(P) Rx(R) in radians; without it: any."),
     ] = None,
-    frame: Annotated[str | None, typer.Option(help="The frame to place; default: the robot's tip.")] = None,
+    frame: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--frame",
+            "--tip",
+            help="The frame to place; default: the robot's tip. Repeated: others that goals are about.",
+        ),
+    ] = None,
+    goal: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="'KIND NAME=VALUE ...'",
+            help="A goal beside the target, such as 'look_at frame=tool0 point=1,0,0.5', m and rad; may be repeated. "
+            f"Kinds: {KINDS}.",
+        ),
+    ] = None,
+    wish: Annotated[
+        list[str] | None, typer.Option(metavar="'KIND NAME=VALUE ...'", help="The same as a wish; may be repeated.")
+    ] = None,
+    goals: Annotated[
+        Path | None, typer.Option(help="A TOML file of goals: [[goal]] and [[wish]], each with kind.")
+    ] = None,
+    base: Annotated[str, typer.Option(help=f"What joins the robot to the world: {', '.join(BASES)}.")] = "fixed",
+    limit: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="JOINT=LEAST,MOST",
+            help="Limits, m or rad, of a joint, or of a base: root_joint.x=-1,1; may be repeated.",
+        ),
+    ] = None,
     lock: Annotated[
         list[str] | None, typer.Option(metavar="JOINT", help="A joint that stays where --q0 has it; may be repeated.")
     ] = None,
@@ -100,16 +134,24 @@ def solve(
     in_degrees: Annotated[bool, typer.Option("--degrees", help="Angles in degrees, given and shown.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Solve for one target. Exit code 0: solved, 1: not solved, 2: the call makes no sense."""
-    if position is None and rpy is None:
-        raise InvalidTarget("nothing to reach: give --position X Y Z, --rpy R P Y, or both")
+    """Solve for one target, or for goals. Exit code 0: solved, 1: not solved, 2: the call makes no sense.
+
+    Loops of an MJCF (<connect>, <weld>) stay closed.
+    """
+    if position is None and rpy is None and not goal and goals is None:
+        raise InvalidTarget("nothing to reach: give --position X Y Z, --rpy R P Y, both, or --goal")
+    asked = read_goals(goal or (), wish or (), goals)
     for option, value in (("--margin", margin), ("--srdf", srdf), ("--allow", allow), ("--no-visual", not visual)):
         if value and world is None:
             raise InvalidSetting(f"{option} is about a world: give --world, too, e.g. --world {ALONE}")
     if picture is not None:
         picture_file(picture)
-    loaded = load_robot(robot, parameters=_parameters(settings or ()))
-    chain = Chain(loaded.model, loaded.frame if frame is None else frame, locked=split(lock or ()))
+    lookup("base", base, BASES)
+    loaded = load_robot(robot, parameters=_parameters(settings or ()), **BASES[base])
+    loops = [Loop(closure) for closure in loaded.loops]
+    ends = [link for loop in loops for link in loop.ends(loaded.model)]
+    frames = [*dict.fromkeys([*(frame or [loaded.frame]), *ends])]
+    chain = Chain(loaded.model, frames, locked=split(lock or ()), limits=_limits(limit or ()))
     start = configuration(loaded.model, split(q0), chain.reference, in_degrees) if q0 else None
     solver = IKSolver(
         None if seeder == "none" else seeder,
@@ -118,11 +160,13 @@ def solve(
     )
     obstacles = None if world is None else _world(loaded, world, margin or 0.0, srdf, allow or (), visual)
     target = _target(position, rpy, in_degrees)
+    together = [*([] if target is None else [replace(target, frame=frames[0])]), *loops, *asked]
+    wanted = together if target is None or len(together) > 1 else target
     if not in_degrees and any(abs(angle) > tau for angle in rpy or ()):
         warn("--rpy is in radians; for degrees give --degrees, too")
-    _warm_up(chain, target, solver)
-    result = solve_ik(chain, target, start, solver=solver, world=obstacles, rng=rng)
-    there = position if rpy is None or position is None else target.pose  # without a position: nowhere to draw
+    _warm_up(chain, wanted, solver)
+    result = solve_ik(chain, wanted, start, solver=solver, world=obstacles, rng=rng)
+    there = position if target is None or position is None or rpy is None else target.pose  # None: nowhere to draw
     if picture is not None:
         save_arm(picture, chain, result.q, there, obstacles)
     if as_json:
@@ -135,18 +179,31 @@ def solve(
     raise typer.Exit(0 if result.success else 1)
 
 
-def _parameters(settings: Iterable[str]) -> dict[str, float]:
-    """Values by name, of ``NAME=VALUE`` each; the table knows which there are."""
-    values: dict[str, float] = {}
+def _parameters(settings: Iterable[str]) -> dict[str, float | str | bool]:
+    """Values by name, of ``NAME=VALUE`` each; the table or the xacro file knows which there are."""
+    values: dict[str, float | str | bool] = {}
     for setting in settings:
         name, sign, text = setting.partition("=")
+        if not sign or not text:
+            raise InvalidSetting(f"--set takes NAME=VALUE, such as h=10, got {setting!r}")
         try:
             values[name.strip()] = float(text)
         except ValueError:
-            sign = ""
-        if not sign:
-            raise InvalidSetting(f"--set takes NAME=VALUE with a number, such as h=10, got {setting!r}")
+            values[name.strip()] = text
     return values
+
+
+def _limits(given: Iterable[str]) -> dict[str, tuple[float, float]]:
+    """Limits by the name of a joint, of ``JOINT=LEAST,MOST`` each."""
+    limits: dict[str, tuple[float, float]] = {}
+    for one in given:
+        name, _, text = one.partition("=")
+        try:
+            least, most = (float(part) for part in text.split(","))
+        except ValueError:
+            raise InvalidBounds(f"--limit takes JOINT=LEAST,MOST with two numbers, got {one!r}") from None
+        limits[name.strip()] = least, most
+    return limits
 
 
 def _world(
@@ -162,18 +219,18 @@ def _world(
     return world
 
 
-def _warm_up(chain: Chain, target: Target, solver: IKSolver) -> None:
-    """Solve for the pose that the chain has already, so that compiling and sampling are not in the time shown."""
-    pose = chain.placements(chain.reference)[0]
-    there = replace(target, pose=pose)
+def _warm_up(chain: Chain, wanted: Target | list[Goal | Wish], solver: IKSolver) -> None:
+    """Solve, a target for the pose that the chain has, so that compiling and sampling are not in the time shown."""
+    there = replace(wanted, pose=chain.placements(chain.reference)[0]) if isinstance(wanted, Target) else wanted
     solve_ik(chain, there, chain.reference, solver=replace(solver, select="first", budget=WARM))
 
 
 def _target(
     position: tuple[float, float, float] | None, rpy: tuple[float, float, float] | None, in_degrees: bool
-) -> Target:
+) -> Target | None:
+    """The target of the first frame; None without one."""
     if rpy is None:
-        return Target.at(position or ())
+        return None if position is None else Target.at(position)
     rotation = rpy_matrix(*(radians(a) if in_degrees else a for a in rpy))
     if position is None:
         return Target.facing(rotation)
@@ -208,6 +265,8 @@ def show(robot: str, chain: Chain, result: IKResult, in_degrees: bool) -> None:
         console.print(f"  {name:24} {value:12.6f} {unit}")
     x, y, z = chain.placements(result.q)[0].translation
     console.print(f"  {'reached':24} {x:.6f} {y:.6f} {z:.6f} m", markup=False)
+    for outcome in result.wishes:
+        console.print(f"  wish {outcome}", soft_wrap=True, markup=False)
     if not result.success:
         console.print(f"  {result.why}", soft_wrap=True)
 

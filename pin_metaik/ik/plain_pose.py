@@ -64,6 +64,8 @@ def solve_plain(
             return None
         asked, matrix = target, target.pose.homogeneous
         near, aligned = target.allowance
+    elif isinstance(target, (list, tuple)) and len(target) == 1 and isinstance(target[0], (Target, pin.SE3)):
+        return solve_plain(chain, target[0], q0, settings, seed)
     else:
         numbers = as_numbers(target)
         if numbers.shape == (4, 4):

@@ -146,6 +146,14 @@ class IKProblem:
         """The robot at coordinates x (n,), as goals see it."""
         return Placed(self.chain, self.chain.q(x, self.base))
 
+    def nearest_turns(self, X: NDArray[np.float64], x0: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Solutions X (k, n), each by whole turns nearest to x0 (n,), unless that loses a goal, such as a posture."""
+        near = self.limits.nearest_turns(X, x0)
+        if self.goals:
+            lost = [not self.goals.met(self.placed(x)) for x in near]
+            near[lost] = X[lost]
+        return near
+
     @property
     def limits(self) -> Limits:
         """The limits of the chain's coordinates."""

@@ -164,7 +164,7 @@ def solve_ik_all(
         )
     except Stopped as stop:
         (found, spent), complete, interrupted = stop.result, None, True
-    found = chain.limits.nearest_turns(found, x0)
+    found = problem.nearest_turns(found, x0)
     found = found[np.argsort(np.linalg.norm(found - x0, axis=1), kind="stable")]
     q = chain.q(found, base)
     judged = np.array([problem.accepts(one) for one in q], dtype=bool)

@@ -231,7 +231,7 @@ class IKSolver:
         if problem.world is not None:
             found = found[[problem.accepts(q) for q in problem.chain.q(found, base)]]
         if len(found):
-            found = problem.limits.nearest_turns(found, x0)
+            found = problem.nearest_turns(found, x0)
             if problem.wishes:
                 found = np.array([turned(problem, x, x0, wished) for x in found])
             best = found[np.argmin(measure(problem, found, x0))]

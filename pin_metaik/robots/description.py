@@ -19,6 +19,8 @@ from pin_metaik.errors import InvalidModel
 from pin_metaik.optimize.settings import one_of
 from pin_metaik.robots import plausible
 from pin_metaik.robots.couplings import NO_COUPLINGS, coupled, make_ready, read_couplings, with_own_names
+from pin_metaik.robots.loops import Loops, equalities_not_read, read_loops
+from pin_metaik.robots.macros import sign_of_xacro
 from pin_metaik.robots.prints import caught_prints, explain
 from pin_metaik.robots.spelling import misspelt
 from pin_metaik.robots.text import outermost, parsed
@@ -30,8 +32,6 @@ KINDS: dict[Shapes, pin.GeometryType] = {
     "collision": pin.GeometryType.COLLISION,
     "visual": pin.GeometryType.VISUAL,
 }
-_CARRY_NUMBERS = ("link", "joint", "origin", "axis", "limit", "parent", "child", "mimic")
-_NOT_READ = ("equality", "include")  # of MJCF
 
 
 @checked_as(InvalidModel)
@@ -105,9 +105,10 @@ class Description:
             InvalidModel: If it is not a URDF: other XML, not well-formed, or xacro that was not expanded.
         """
         if outermost(self.text) == "sdf":
-            raise InvalidModel(f"{self.what} is SDF, which Pinocchio's wheels cannot read: convert it to URDF")
+            raise InvalidModel(f"{self.what} is SDF, which Pinocchio's wheels cannot read: convert it to URDF or MJCF")
         tree = parsed(self.text, self.what)
-        _refuse_xacro(tree, self.what)
+        if sign := sign_of_xacro(tree):
+            raise InvalidModel(f"{self.what} is xacro that was not expanded: it has {sign}; run xacro on it first")
         return tree
 
     def free_mimics(self) -> tuple[str, ...]:
@@ -118,6 +119,13 @@ class Description:
         if self.mimic:
             return tuple(read_couplings(motion, self.what).broken)
         return tuple(j.get("name", "") for j in motion.iterfind("joint[mimic]") if j.get("type") != "fixed")
+
+    def loops(self) -> Loops:
+        """The closed loops of an MJCF, as Pinocchio's constraints; a URDF is a tree."""
+        if not self.is_mjcf:
+            return ()
+        with self._file() as path, caught_prints():
+            return read_loops(path, self.text)
 
     def _root(self) -> tuple[pin.JointModel, ...]:
         return () if self.base == "fixed" else (ROOTS[self.base](),)
@@ -174,7 +182,10 @@ class Description:
                 why = (prints() or explain(error)).replace(path, self.what)
                 raise InvalidModel(f"{self.what} is not MJCF that can be read: {why}") from None
             printed = list(filter(None, [prints()]))
-        left = [f"{self.what} has <{name}>, which is not read" for name in _NOT_READ if f"<{name}" in self.text]
+        names = [f"equality><{kind}" for kind in equalities_not_read(self.text)] + ["include"] * (
+            "<include" in self.text
+        )
+        left = [f"{self.what} has <{name}>, which is not read" for name in names]
         return model, [*left, *printed]
 
     def _mjcf_geometry(self, model: pin.Model, shapes: Shapes) -> pin.GeometryModel:
@@ -203,13 +214,3 @@ _MADE_FROM: WeakKeyDictionary[pin.Model, Description] = WeakKeyDictionary()
 def description_of(model: pin.Model) -> Description | None:
     """The source of a model, or None if it is not one of ``Description.model``."""
     return _MADE_FROM.get(model)
-
-
-def _refuse_xacro(tree: ET.Element, what: str) -> None:
-    """Xacro is a language of macros, which a URDF parser does not expand."""
-    for element in tree.iter():
-        signs = [f"<{element.tag}>"] if element.tag.startswith("xacro:") else []
-        if not signs and element.tag in _CARRY_NUMBERS:
-            signs = [f'{key}="{value}"' for key, value in element.attrib.items() if "${" in value or "$(" in value]
-        if signs:
-            raise InvalidModel(f"{what} is xacro that was not expanded: it has {signs[0]}; run xacro on it first")

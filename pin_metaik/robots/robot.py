@@ -14,6 +14,8 @@ from pin_metaik.arguments import checked_as
 from pin_metaik.errors import InvalidModel, InvalidTable, UnknownName
 from pin_metaik.robots.description import Base, Description
 from pin_metaik.robots.library import LEFT_OUT, TIPS, catalogue, example_robots
+from pin_metaik.robots.loops import Loops
+from pin_metaik.robots.macros import expanded, is_xacro
 from pin_metaik.robots.plausible import angles_in_radians
 from pin_metaik.robots.table import read_table
 from pin_metaik.robots.text import read_text
@@ -82,6 +84,11 @@ class Robot:
         """Joints that should follow another one by the URDF, but are free in the model."""
         return self.description.free_mimics()
 
+    @cached_property
+    def loops(self) -> Loops:
+        """Closed loops of its MJCF, which the model, a tree, leaves open: ``goals.Loop`` of each closes it."""
+        return self.description.loops()
+
     def _geometry(self, shapes: Shapes) -> pin.GeometryModel:
         geometry, remarks = self.description.geometry(self.model, shapes)
         _say(self.name, remarks)
@@ -128,7 +135,7 @@ def robot_names() -> list[RobotName]:
 def load_robot(
     name: str | Path | RobotName | ModuleType,
     *,
-    parameters: Mapping[str, float] | None = None,
+    parameters: Mapping[str, float | str | bool] | None = None,
     free_flyer: bool = False,
     planar: bool = False,
     mimic: bool = True,
@@ -141,8 +148,10 @@ def load_robot(
     Args:
         name: Name in the catalogue or in example-robot-data (also as ``robot_names`` gives it), path of a URDF, of an
             MJCF or of a DH table's ``.toml``, the text of a URDF or an MJCF, or a module that has its path as
-            ``URDF_PATH`` or ``MJCF_PATH``, as those of the package robot_descriptions.
-        parameters: Values that replace those of a DH table's ``[parameters]``, in the table's units.
+            ``URDF_PATH`` or ``MJCF_PATH``, as those of the package robot_descriptions. A URDF may be xacro, which the
+            extra ``xacro`` expands.
+        parameters: Values that replace those of a DH table's ``[parameters]``, in the table's units, or of the
+            ``<xacro:arg>`` of a xacro file.
         free_flyer: Put the base on a free-flyer, six more coordinates, of which a chain wants limits for
             ``root_joint.x``, ``.y`` and ``.z`` (m); otherwise the base is fixed.
         planar: Put it on a plane, three more coordinates: limits for ``root_joint.x`` and ``.y``.
@@ -154,6 +163,7 @@ def load_robot(
         UnknownName: If nothing is so named, or the table has no such parameter.
         InvalidTable: If the DH table makes no sense.
         InvalidModel: If the file is missing, is not a robot, no joint of it moves anything, or the base is both.
+        MissingExtra: If it is xacro, and xacro is not installed.
     """
     if free_flyer and planar:
         raise InvalidModel("a base is on a free-flyer or on a plane: give free_flyer or planar, not both")
@@ -162,16 +172,21 @@ def load_robot(
     return robot
 
 
-def _loaded(name: str | Path | ModuleType, parameters: Mapping[str, float] | None, base: Base, mimic: bool) -> Robot:
+def _loaded(
+    name: str | Path | ModuleType, parameters: Mapping[str, float | str | bool] | None, base: Base, mimic: bool
+) -> Robot:
     label, content, srdf = _located(name)
     source, remarks = content if isinstance(content, Path) else None, list[str]()
     if source is not None and source.suffix.lower() == ".toml":
         table = read_table(source, parameters)
         label, text, remarks = label or table.name, to_urdf(table), angles_in_radians(table)
-    elif parameters:
-        raise InvalidTable(f"{label or source or 'the text'} has no parameters: only DH tables have")
     else:
         text = str(content) if source is None else read_text(source)
+        what = str(source or "the text")
+        if is_xacro(text, what):
+            text = expanded(text, source, what, parameters or {})
+        elif parameters:
+            raise InvalidTable(f"{label or what} has no parameters: only DH tables and xacro files have")
     description = Description(text, source, base, mimic)
     model, said = description.read()
     label = label or model.name

@@ -51,7 +51,7 @@ _JOINT_OPTIONAL = ("name", "type", "d", "theta", "offset", "limits", "continuous
 
 
 @checked_as(InvalidTable)
-def read_table(path: str | Path, parameters: Mapping[str, float] | None = None) -> DHTable:
+def read_table(path: str | Path, parameters: Mapping[str, float | str | bool] | None = None) -> DHTable:
     """Read a DH table.
 
     Args:
@@ -71,7 +71,7 @@ def read_table(path: str | Path, parameters: Mapping[str, float] | None = None) 
 class _Reader:
     """One file being read: it knows the units and parameters, and prefixes every complaint with the place."""
 
-    def __init__(self, path: str, content: dict[str, Any], replaced: Mapping[str, float]) -> None:
+    def __init__(self, path: str, content: dict[str, Any], replaced: Mapping[str, float | str | bool]) -> None:
         self.path, self.content = path, content
         self.top = Table(content, path, _TOP, _TOP_OPTIONAL)
         self.name, self.convention, self.description, self.source = (

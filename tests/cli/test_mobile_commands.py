@@ -83,7 +83,7 @@ def test_every_setting_of_a_planner_and_of_its_fitness_is_reached(call: Call) ->
         (("mobile", "learn", "-o", "x.npz", "--vehicle", "turtlebot3_burger"), "is none"),
         (("solve", "puma_offset", "--position", 8, 5, 12, "--set", "hh=1"), "did you mean 'h'"),
         (("solve", "puma_offset", "--position", 8, 5, 12, "--set", "h"), "NAME=VALUE"),
-        (("solve", "ur5", "--position", 0.3, 0.3, 0.4, "--set", "h=1"), "only DH tables have"),
+        (("solve", "ur5", "--position", 0.3, 0.3, 0.4, "--set", "h=1"), "only DH tables and xacro"),
         (("solve", "ur5", "--position", 0.3, 0.3, 0.4, "--picture", "x.txt"), ".png, .svg, .pdf"),
     ],
     ids=lambda words: " ".join(map(str, words)) if isinstance(words, tuple) else "",

@@ -1,6 +1,7 @@
 """Cases: their tasks are what they say, for any arm, and can be done."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -9,9 +10,12 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import pin_metaik as mik
 from pin_metaik.collision import Obstacle, Sphere
-from pin_metaik.compare import CASES, Answer, Attempt, Case, Task
+from pin_metaik.compare import CASES, METHODS, Answer, Attempt, Case, Suite, Task, compare, replay, write_report
 from pin_metaik.compare.cases.case import NoTask
 from pin_metaik.compare.cases.jacobians import jacobians
+from pin_metaik.compare.folder.store import read_rows
+from pin_metaik.compare.methods.peers.peer import Peer
+from pin_metaik.errors import InvalidTarget
 
 ROBOTS = ["panda", "ur5", "rv7fl", "kinova", "pr2"]
 COUNT = 5
@@ -46,7 +50,15 @@ def least_singular_value(task: Task) -> float:
     return float(np.linalg.svd(J, compute_uv=False)[-1])
 
 
-ANY_ARM = [(name, robot) for name, case in CASES.items() if case.world is None for robot in ROBOTS]
+GOALS = {
+    "look_at": ["panda", "ur5", "pr2"],
+    "cup_upright": ["panda", "ur5", "pr2"],
+    "two_hands": ["pr2", "talos"],
+    "whole_body": ["talos", "solo12", "anymal"],
+}
+ANY_ARM = [
+    (name, robot) for name, case in CASES.items() if case.world is None and name not in GOALS for robot in ROBOTS
+]
 
 
 @pytest.mark.parametrize(("name", "robot"), [*ANY_ARM, ("cluttered", "panda"), ("cluttered", "ur5")])
@@ -198,3 +210,47 @@ def test_a_world_without_room_is_an_error(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr("pin_metaik.compare.cases.case.DRAWS", 20)
     with pytest.raises(NoTask, match="none of 20 tasks is free"):
         case.task(case.chain(robot, np.random.default_rng(0)), walled, np.random.default_rng(0))
+
+
+@pytest.mark.parametrize(("name", "robot"), [(name, robot) for name, some in GOALS.items() for robot in some])
+def test_goals_of_a_case_are_met_by_what_they_were_made_of_and_solved(name: str, robot: str) -> None:
+    case = CASES[name]
+    for task, again in zip(tasks(case, robot), tasks(case, robot), strict=True):
+        assert task.planted is not None and again.planted is not None
+        assert_array_equal(task.planted, again.planted)
+        assert task.chain.limits.contains(task.planted[0])
+        assert case.judge(task, attempt(task, task.planted))
+        anywhere = task.chain.box.sample(np.random.default_rng(99), 1)
+        assert not case.judge(task, attempt(task, anywhere))
+        assert mik.solve_ik(task.chain, task.targets[0]).success
+
+
+@pytest.mark.parametrize(
+    ("name", "robot", "says"),
+    [
+        ("two_hands", "panda", "no counterpart of 'panda_hand_tcp'"),
+        ("whole_body", "ur5", "no two links that are called feet or soles"),
+    ],
+)
+def test_a_robot_without_a_second_hand_or_feet_is_told_so(name: str, robot: str, says: str) -> None:
+    assert says in CASES[name].lacks(mik.load_robot(robot), np.random.default_rng(0))
+
+
+def test_cases_of_goals_are_run_by_metaheuristics_and_by_the_default(tmp_path: Path) -> None:
+    methods = ("default", "gwo+dls", "gwo")
+    outcome = compare(Suite(("panda", "talos"), tuple(GOALS), methods, tasks=1, budget=1000), tmp_path)
+    assert outcome.errors == 0
+    done = read_rows(tmp_path)
+    pairs = {("panda", "look_at"), ("panda", "cup_upright"), *(("talos", name) for name in GOALS)}
+    assert {(row.robot, row.case) for row in done} == pairs
+    assert all(row.solved for row in done if row.method == "default")
+    assert sum(row.solved for row in done if row.method == "gwo+dls") >= 4  # of 6
+    assert "LookAt" in "".join(replay(tmp_path, "panda/look_at/0/gwo/0").lines())
+    assert any("look_at" in page.read_text(encoding="utf-8") for page in write_report(tmp_path) if page.suffix == ".md")
+
+
+def test_a_solver_that_takes_poses_says_so_of_goals() -> None:
+    task = tasks(CASES["look_at"], "ur5")[0]
+    peer = next(method for method in METHODS.values() if isinstance(method, Peer))
+    with pytest.raises(InvalidTarget, match="takes one pose, and no goals of other kinds"):
+        peer.solve(task.problems[0], task.chain.x(task.chain.reference), 100, np.random.default_rng(0))

@@ -158,8 +158,11 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "nothing": ("", "it has no XML element <robot>"),
     "a picture": (b"\x89PNG\r\n\x1a\n\x00\x00", "it is not text"),
     "a pointer of Git LFS": ("version https://git-lfs.github.com/spec/v1\nsize 9", "pointer of Git LFS, not the file"),
-    "xacro": (arm(root='<xacro:arm name="left"/>'), "is xacro that was not expanded: it has <xacro:arm>"),
-    "xacro in a number": (arm(joint=LIMIT.replace('"2"', '"${pi/2}"')), r'it has upper="\$\{pi/2\}"; run xacro'),
+    "xacro": (arm(root='<xacro:arm name="left"/>'), "is xacro that cannot be expanded: unbound prefix"),
+    "xacro in a number": (
+        arm(joint=LIMIT.replace('"2"', '"${pi/none}"')),
+        "xacro that cannot be expanded: name 'none'",
+    ),
     "SDF": ("<sdf version='1.7'><model name='m'/></sdf>", "is SDF, which"),
     "a launch file": ("<launch><node/></launch>", "outermost element is <launch>, not <robot>"),
     "an element that does not close": (PLAIN.replace("</joint>", "", 1), "not well-formed XML: mismatched tag: line 1"),

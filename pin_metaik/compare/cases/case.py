@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import pinocchio as pin
 
 from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
@@ -14,10 +13,12 @@ from pin_metaik.collision import CollisionWorld
 from pin_metaik.compare.methods.method import Answer
 from pin_metaik.errors import MetaIKError, UnsupportedJoint
 from pin_metaik.ik import IKProblem, IKStatus, Verdict
+from pin_metaik.ik.problem import Asked
 from pin_metaik.kinematics import Chain
 from pin_metaik.robots import Robot
 
 DRAWS = 1_000  # of a task, before a world is found to leave no room
+BY_GOALS = "Every goal is met to within its tolerance and inside the limits, by Pinocchio, whatever the method says."
 REACHED = "Within 1e-5 m and 1e-5 rad of the target and inside the limits, by Pinocchio, whatever the method says."
 
 
@@ -27,18 +28,19 @@ class NoTask(MetaIKError):
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """Poses for the frame of a chain, one or several in a row.
+    """Poses for the frame of a chain, or lists of goals, one or several in a row.
 
     Attributes:
         chain: The arm.
-        targets: World poses; a method gets one at a time, and starts from its answer to the one before.
+        targets: World poses, or goals that are met together; a method gets one target at a time, and starts from its
+            answer to the one before.
         planted: (K, n) coordinates that reach them, if they were made from some.
         start: (n,) where to start from; ``None``: anywhere, drawn anew for every seed.
         world: What must not collide.
     """
 
     chain: Chain
-    targets: tuple[pin.SE3, ...]
+    targets: tuple[Asked, ...]
     planted: Array | None = None
     start: Array | None = None
     world: CollisionWorld | None = None
@@ -53,7 +55,7 @@ class Task:
     @property
     def problems(self) -> list[IKProblem]:
         """The targets as problems."""
-        return [IKProblem.of(self.chain, pose, self.world) for pose in self.targets]
+        return [IKProblem.of(self.chain, target, self.world) for target in self.targets]
 
 
 @dataclass(frozen=True, eq=False)

@@ -48,7 +48,7 @@ class Method(Protocol):
         """Answer a problem.
 
         Args:
-            problem: One target for the one frame of ``problem.chain``.
+            problem: One target for the one frame of ``problem.chain``, or goals that are met together.
             x0: (n,) coordinates to start from.
             budget: Kernel evaluations that may be spent.
             rng: The only source of randomness.

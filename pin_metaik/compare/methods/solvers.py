@@ -69,7 +69,8 @@ class Default:
         if steps == 0:
             return Answer(x0, False, 0, str(IKStatus.OUT_OF_TOLERANCE))
         solver = IKSolver(budget=Budget(evaluations=steps), select=self.select)
-        found = answer(solve_ik(chain, problem.targets[0], chain.q(x0), solver=solver, world=problem.world, rng=rng))
+        asked, x = list(problem.asked), chain.q(x0)
+        found = answer(solve_ik(chain, asked, x, solver=solver, world=problem.world, rng=rng))
         return replace(found, evaluations=evaluations_of(found.evaluations or 0))
 
 

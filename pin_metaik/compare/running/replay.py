@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 
 from pin_metaik.arguments import checked
 from pin_metaik.compare.cases.case import Task
@@ -64,12 +65,15 @@ class Replay:
             yield "as its row says" if self.same else f"its row differs: {self.row}"
 
     def _asked(self) -> Iterator[str]:
-        """The poses of the task, and the coordinates that they were made from."""
+        """The poses of the task, or its goals, and the coordinates that they were made from."""
         if self.task is None:
             return
-        poses = self.task.targets
-        for i, pose in enumerate(poses, start=1):
-            which = f", pose {i}" if len(poses) > 1 else ""
+        targets = self.task.targets
+        for i, pose in enumerate(targets, start=1):
+            which = f", pose {i}" if len(targets) > 1 else ""
+            if not isinstance(pose, pin.SE3):
+                yield f"task {self.trial.task}{which}: {self.task.problems[i - 1].asked}"
+                continue
             yield f"task {self.trial.task}{which}: position {_numbers(pose.translation)} m"
             first, *others = map(_numbers, pose.rotation)
             yield f"          rotation {first}"

@@ -60,7 +60,7 @@ def keep_clear(
     else:
         free = search.run(first.x, seeder)
     if free is not None:
-        q, status = chain.q(chain.limits.nearest_turns(free, chain.x(base)), base), IKStatus.SOLVED
+        q, status = chain.q(problem.nearest_turns(free[None], chain.x(base))[0], base), IKStatus.SOLVED
     else:
         q = chain.q(search.least_deep(), base) if search.known else first.q
         status = IKStatus.STOPPED if state.late() else IKStatus.IN_COLLISION

@@ -12,6 +12,7 @@ from pin_metaik.ik.goals.frame_pose import FramePose
 from pin_metaik.ik.goals.goal import Goal, Goals, Outcome
 from pin_metaik.ik.goals.in_box import InBox
 from pin_metaik.ik.goals.look_at import LookAt
+from pin_metaik.ik.goals.loop import Loop
 from pin_metaik.ik.goals.manipulability import Manipulability
 from pin_metaik.ik.goals.mid_range import MidRange
 from pin_metaik.ik.goals.on_line import OnLine
@@ -29,6 +30,7 @@ GOALS: dict[str, Callable[..., Any]] = {
     "frame_pose": FramePose,
     "in_box": InBox,
     "look_at": LookAt,
+    "loop": Loop,
     "manipulability": Manipulability,
     "mid_range": MidRange,
     "on_line": OnLine,
@@ -48,6 +50,7 @@ __all__ = [
     "Goals",
     "InBox",
     "LookAt",
+    "Loop",
     "Manipulability",
     "MidRange",
     "OnLine",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass
 
 import pinocchio as pin
 from numpy.typing import ArrayLike
@@ -13,12 +13,13 @@ from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidTarget
 from pin_metaik.ik.goals.placed import Placed, check_moved
 from pin_metaik.ik.goals.pose import DEFAULT_TOLERANCE, Target, Tolerance
+from pin_metaik.ik.goals.posed import Posed
 from pin_metaik.kinematics import Chain
 
 
 @checked_as(InvalidTarget)
 @dataclass(frozen=True, eq=False)
-class FramePose:
+class FramePose(Posed):
     """A pose, position or orientation for any frame that the chain moves, with tolerances as those of ``Target``.
 
     With a ``reference`` it is the pose that this other frame sees: two hands on one tray, a camera over the gripper. A
@@ -45,7 +46,6 @@ class FramePose:
     orientation_tolerance: Tolerance = DEFAULT_TOLERANCE
     position_weight: float = 1.0
     orientation_weight: float = 1.0
-    _target: Target = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Check everything once, where it enters."""
@@ -71,22 +71,9 @@ class FramePose:
         """
         check_moved(chain, self.frame, self.reference)
 
-    def residual(self, at: Placed) -> Array:
-        """(6,) weighted errors of position (m) and orientation (rad) beyond the tolerances."""
-        return self._target._beyond(self._placement(at))
-
-    def jacobian(self, at: Placed) -> Array:
-        """(6, n) derivative of the residual by the coordinates of the chain."""
-        return self._target._slopes(self._placement(at), at.jacobian(self.frame, self.reference))
-
-    def met(self, at: Placed) -> bool:
-        """Whether the frame is within the tolerances."""
-        return self._target.judge(self._placement(at)).met
-
-    def off(self, at: Placed) -> dict[str, float]:
-        """Distance (m) and angle (rad) from the pose, over the axes that count."""
-        return self._target._off(self._placement(at))
-
     def _placement(self, at: Placed) -> pin.SE3:
         instance(Placed, at=at)
         return at.pose(self.frame, self.reference)
+
+    def _speeds(self, at: Placed) -> Array:
+        return at.jacobian(self.frame, self.reference)

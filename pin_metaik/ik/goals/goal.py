@@ -64,9 +64,9 @@ class Outcome(NamedTuple):
 
 
 def named(goal: Goal) -> str:
-    """A goal for a message: its kind, and the frame that it is about."""
-    frame = getattr(goal, "frame", None)
-    return type(goal).__name__ + (f" of {frame}" if isinstance(frame, str) else "")
+    """A goal for a message: its kind, and the frame, or whatever else, that it is about."""
+    about = getattr(goal, "frame", None) or getattr(goal, "about", None)
+    return type(goal).__name__ + (f" of {about}" if isinstance(about, str) else "")
 
 
 class Goals(NamedTuple):

@@ -84,12 +84,25 @@ class Placed:
         return J
 
     def _relative(self, frame: str, reference: str) -> Array:
-        """The same of a frame as another one sees it: v = R'(v_f - v_r - w_r x (p_f - p_r)), w = R'(w_f - w_r)."""
-        base = self.pose(reference)
-        J, Jr = self.jacobian(frame), self.jacobian(reference)
-        arm = pin.skew(self.pose(frame).translation - base.translation)
-        turn = base.rotation.T
-        return np.concatenate([turn @ (J[:3] - Jr[:3] + arm @ Jr[3:]), turn @ (J[3:] - Jr[3:])])
+        """The same of a frame as another one sees it."""
+        return relative(self.pose(frame), self.jacobian(frame), self.pose(reference), self.jacobian(reference))
+
+    def _on_joint(self, joint: int, placement: pin.SE3) -> pin.SE3:
+        """World pose of a frame that is fixed to a joint, by its number, at a placement in the joint's frame."""
+        return self._joint_poses[joint] * placement
+
+    def _jacobian_on_joint(self, joint: int, placement: pin.SE3) -> Array:
+        """Velocity (6, n) of the same by the coordinates of the chain, along the axes of the world."""
+        if joint == 0:  # the world
+            return np.zeros((6, self.chain.n))
+        J = self._by_coordinates(pin.computeJointJacobian(self.chain.model, self.chain.data, self.q, joint))
+        R, local = self._on_joint(joint, placement).rotation, placement.toActionMatrixInverse() @ J
+        return np.concatenate([R @ local[:3], R @ local[3:]])
+
+    @cached_property
+    def _joint_poses(self) -> pin.StdVec_SE3:
+        pin.forwardKinematics(self.chain.model, self.chain.data, self.q)
+        return pin.StdVec_SE3(self.chain.data.oMi)
 
     @cached_property
     def centre_of_mass(self) -> Array:
@@ -119,6 +132,15 @@ class Placed:
 
     def _moved(self, h: Array) -> Placed:
         return Placed(self.chain, self.chain.q(self.x + h, self.q))
+
+
+def relative(pose: pin.SE3, J: Array, base: pin.SE3, Jb: Array) -> Array:
+    """Velocity (6, n) of a frame as another one sees it, from those of both along the axes of the world.
+
+    v = R'(v_f - v_b - w_b x (p_f - p_b)) and w = R'(w_f - w_b), with R the rotation of the base.
+    """
+    arm, turn = pin.skew(pose.translation - base.translation), base.rotation.T
+    return np.concatenate([turn @ (J[:3] - Jb[:3] + arm @ Jb[3:]), turn @ (J[3:] - Jb[3:])])
 
 
 def _known(found: dict[tuple[str, str | None], Found], frame: str, reference: str | None) -> Found | None:

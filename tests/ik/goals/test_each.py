@@ -52,6 +52,7 @@ EXAMPLES: dict[str, Callable[[str, str, mik.Chain], list[Any]]] = {
         goals.LookAt(tip, FAR),
         goals.LookAt(tip, FAR, (1, 2, 1), reference=other, tolerance=0.02),
     ],
+    "loop": lambda tip, other, chain: [goals.Loop(one) for one in closures(tip, other, chain)],
     "manipulability": lambda tip, other, chain: [
         goals.Manipulability(tip, 50.0),
         goals.Manipulability(tip, 50.0, "position", reference=other),
@@ -79,6 +80,22 @@ EXAMPLES: dict[str, Callable[[str, str, mik.Chain], list[Any]]] = {
         goals.Posture({chain.names[0]: (-0.2, -0.1)}, tolerance=0.01),
     ],
 }
+
+
+def closures(tip: str, other: str, chain: mik.Chain) -> list[Any]:
+    """Constraints of every kind between two frames, far from being met."""
+    model = chain.model
+    first, second = (int(model.frames[model.getFrameId(name)].parentJoint) for name in (tip, other))
+    ends = model, first, POSE, second, pin.SE3(pin.exp3(np.array([0.4, -0.3, 0.2])), np.ones(3))
+    offset = pin.PointAnchorConstraintModel(*ends)
+    offset.desired_constraint_offset = np.array([0.1, 0.2, 0.3])
+    return [
+        pin.RigidConstraintModel(pin.ContactType.CONTACT_3D, *ends),
+        pin.RigidConstraintModel(pin.ContactType.CONTACT_6D, *ends),
+        offset,
+        pin.ConstraintModel(pin.FrameAnchorConstraintModel(*ends)),
+        pin.PointAnchorConstraintModel(model, first, POSE),  # to the world
+    ]
 
 
 def frames(chain: mik.Chain) -> tuple[str, str]:

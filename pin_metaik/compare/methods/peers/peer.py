@@ -12,6 +12,7 @@ import numpy as np
 from pin_metaik.arrays import Array
 from pin_metaik.compare.methods.method import Answer
 from pin_metaik.compare.methods.peers.serial_arm import SerialArm
+from pin_metaik.errors import InvalidTarget
 from pin_metaik.ik import IKProblem
 from pin_metaik.kinematics import Chain
 from pin_metaik.lookup import need
@@ -44,7 +45,10 @@ class Peer:
         Raises:
             MissingExtra: The package is not installed.
             ValueError: The chain branches, or has mimic joints.
+            InvalidTarget: More is asked than one pose.
         """
+        if problem.goals:
+            raise InvalidTarget(f"the method {self.name!r} takes one pose, and no goals of other kinds")
         return _loaded(self, problem.chain)(problem.targets[0].pose.homogeneous, x0, budget, rng)
 
     def need(self) -> None:
