@@ -24,7 +24,7 @@ class ChainScrews:
         model, columns = chain.model, chain.coordinates.columns
         self._rows = np.zeros((model.njoints, 8))
         self._rows[:, :6] = np.nan_to_num(screws.axes, nan=0.0)
-        one_axis = np.isfinite(screws.axes).all(axis=1).tolist()
+        one_axis = [bool(np.isfinite(axis).all()) for axis in screws.axes]
         self._turns, self._slides = np.zeros((2, model.njoints, chain.n))
         for joint in range(1, model.njoints):
             if (leader := leader_of(model, joint)) not in columns:
