@@ -11,7 +11,7 @@ from rich.console import Console
 from typer.core import TyperGroup
 
 from pin_metaik import __version__
-from pin_metaik.cli import compare, demo, mobile, reproduce, robots, solve, stewart, warm
+from pin_metaik.cli import compare, demo, mobile, reachable, reproduce, robots, solve, stewart, warm
 from pin_metaik.cli.codes import INTERRUPTED, NONSENSE
 from pin_metaik.cli.examples import show_examples
 from pin_metaik.cli.mobile.plan import plan
@@ -40,6 +40,8 @@ app = typer.Typer(
 app.command("solve")(solve.solve)
 app.command("robots")(robots.robots)
 app.command("urdf")(robots.urdf)
+app.command("reachability")(reachable.reachability)
+app.command("place-base")(reachable.place)
 app.command("demo")(demo.demo)
 app.command("reproduce")(reproduce.reproduce)
 app.command("compare", cls=ManyValues)(compare.compare)

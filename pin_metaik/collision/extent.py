@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 from typing import Any
 
 import coal
@@ -26,6 +27,16 @@ def box_of(geometry: Any) -> NDArray[np.float64]:
     low, high = np.array(geometry.aabb_local.min_), np.array(geometry.aabb_local.max_)
     half = 0.5 * (high - low)
     return np.array([*(0.5 * (low + high)), *half, np.linalg.norm(half)])
+
+
+def corners_of(geometry: Any) -> NDArray[np.float64]:
+    """(k, 3) points whose convex hull is around a geometry, in its frame, m: its corners, or those of its box."""
+    if isinstance(geometry, coal.ConvexBase):
+        points: NDArray[np.float64] = np.array(geometry.points())
+        return points
+    box = box_of(geometry)
+    corners: NDArray[np.float64] = box[:3] + np.array(list(product((-1.0, 1.0), repeat=3))) * box[3:6]
+    return corners
 
 
 def stand(geometry: Any, box: NDArray[np.float64], row: NDArray[np.float64]) -> NDArray[np.float64]:

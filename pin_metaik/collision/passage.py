@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from pin_metaik.collision.checker import ENCLOSED, Checker
 from pin_metaik.collision.screws import Screws
 from pin_metaik.collision.solids import Placed
+from pin_metaik.collision.travel import Carriers, Travel
 
 INEXACT = 1.0 - 1e-6  # of a distance, what coal's may be off by
 MANY, FAR = 12, 0.05  # pairs with boxes near each other that may move so far, m: then a part is cut in two at once
@@ -59,44 +60,14 @@ class Passages:
     checker: Checker
 
     @cached_property
+    def carriers(self) -> Carriers:
+        """What carries the bodies."""
+        return Carriers(self.checker)
+
+    @property
     def screws(self) -> Screws:
         """How the joints move."""
-        return Screws(self.checker.solids.model)
-
-    @cached_property
-    def supports(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """The joints (m, D) that carry each moving body, from the base on, and how many (m,)."""
-        model, bodies = self.checker.solids.model, self.checker.solids.moving
-        ways = [list(model.supports[body.joint])[1:] for body in bodies]
-        supports = np.zeros((len(ways), max(map(len, ways), default=0) + 1), dtype=np.int64)
-        for row, way in zip(supports, ways, strict=True):
-            row[: len(way)] = way
-        return supports, np.array([len(way) for way in ways], dtype=np.int64)
-
-    @cached_property
-    def common(self) -> NDArray[np.int64]:
-        """How many joints (p,) carry both bodies of a pair that moves."""
-        supports, depths = self.supports
-        shared = [
-            int((supports[i, :d] == supports[j, :d]).cumprod().sum())
-            for i, j in self.checker.asked.own.tolist()
-            for d in [min(depths[i], depths[j])]
-        ]
-        return np.array(shared, dtype=np.int64)
-
-    @cached_property
-    def balls(self) -> NDArray[np.float64]:
-        """(m, 5) a ball around each moving body in its joint's frame, and how far it reaches from that joint's axis."""
-        rows = []
-        for body in self.checker.solids.moving:
-            box, axis = body.solid.box, self.screws.axes[body.joint]
-            corners = body.solid.corners
-            middle = body.placement.act(box[:3])
-            points = corners @ body.placement.rotation.T + body.placement.translation
-            radius = np.linalg.norm(points - middle, axis=1).max()
-            lever = np.linalg.norm(np.cross(points - axis[:3], axis[3:]), axis=1).max()
-            rows.append([*middle, radius, math.inf if np.isnan(lever) else lever])
-        return np.array(rows).reshape(-1, 5)
+        return self.carriers.screws
 
     def first(self, q0: NDArray[np.float64], way: NDArray[np.float64], resolution: float) -> Found:
         """How far along a move nothing collides, and where something does.
@@ -151,18 +122,7 @@ class _Passage:
 
     def __init__(self, passages: Passages, q0: NDArray[np.float64], way: NDArray[np.float64]) -> None:
         self._checker, self._q0, self._way = passages.checker, q0, way
-        from pin_metaik.collision.spans import span
-
-        solids, asked = self._checker.solids, self._checker.asked
-        self._boxes, self._paddings = solids.boxes.copy(), np.ascontiguousarray(solids.boxes[:, 7])
-        self._wide, self._reaches = asked.margins.copy(), np.zeros(len(asked.margins))
-        self._asked = replace(asked, margins=self._wide)
-        supports, depths = passages.supports
-        self._moved = np.zeros(supports.shape)
-        bodies = passages.screws.along(way), supports, depths, passages.balls
-        pairs = asked.own, passages.common, asked.margins, self._paddings
-        self._span = cast(Any, span).compiled()  # a frame less
-        self._given = *bodies, *pairs, self._moved, self._reaches, self._wide, self._boxes
+        self._screws, self._travel = passages.screws.along(way), Travel(passages.carriers)
 
     def collides(self, fraction: float) -> bool:
         """Whether the configuration there collides."""
@@ -172,8 +132,9 @@ class _Passage:
         """What the middle of a part says of the whole part."""
         middle, half = 0.5 * (begin + end), 0.5 * (end - begin)
         placed = self._checker.solids.place(self._at(middle))
-        near = self._near(placed, half)
-        reaches = [self._reaches[own] if own >= 0 else self._moved[i, 0] for i, _, own in near]
+        self._travel.measure(half, placed.joints, self._screws)
+        near = self._travel.near(placed)  # the others are free in the whole part
+        reaches = [self._travel.of(i, own) for i, _, own in near]
         if len(near) > MANY and max(reaches) > FAR:
             return _Look(self._checker.collides_placed(placed), 0.0, max(reaches))
         free, span = 1.0, 0.0
@@ -184,11 +145,6 @@ class _Passage:
             if share < 1.0:
                 free, span = min(free, max(share, 0.0)), max(span, reach)
         return _Look(False, free, span)
-
-    def _near(self, placed: Placed, half: float) -> list[list[int]]:
-        """The pairs whose boxes are not farther apart than their margin and what they can move in half of a part."""
-        self._span(half, placed.joints, *self._given)
-        return placed.near(self._asked, boxes=self._boxes)
 
     def _share(self, placed: Placed, i: int, j: int, own: int, reach: float) -> float:
         """The share of half of a part in which two bodies are proved free, at most 1; below 0 they may collide."""

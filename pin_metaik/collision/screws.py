@@ -36,9 +36,16 @@ class Screws:
         """The tangent vector (nv,) from q0 to q1 (nq,), the short way round for joints without limits.
 
         Raises:
+            UnsupportedJoint: If a joint is made of several others: its twist varies along a move.
             InvalidConfiguration: If a quaternion, or a cosine and sine, is not of length 1, or a joint is farther from
                 its origin than ``FARTHEST`` or is to move farther than ``LONGEST``.
         """
+        for j, joint in enumerate(self.model.joints):
+            if joint.shortname() == "JointModelComposite":
+                raise UnsupportedJoint(
+                    f"joint {self.model.names[j]!r} is made of several others: moves of it are not checked; build the "
+                    "model with one joint for each of them"
+                )
         for q in (q0, q1):
             check_turns(self.model, self._turned, q)
             _check_size(f"a configuration of {self.model.name!r}", q, FARTHEST)
@@ -123,20 +130,11 @@ class Screws:
 
     @cached_property
     def _subspaces(self) -> NDArray[np.float64]:
-        """(J, 6, nv) the twist of each joint, linear part first, in its frame, by the freedoms of all.
-
-        Raises:
-            UnsupportedJoint: If a joint is made of several others: its twist varies along a move.
-        """
+        """(J, 6, nv) the twist of each joint, linear part first, in its frame, by the freedoms of all."""
         model, data = self.model, self.model.createData()
         pin.forwardKinematics(model, data, pin.neutral(model))
         subspaces = np.zeros((model.njoints, 6, model.nv))
         for j, joint in enumerate(model.joints):
-            if joint.shortname() == "JointModelComposite":
-                raise UnsupportedJoint(
-                    f"joint {model.names[j]!r} is made of several others: moves of it are not checked; build the model "
-                    "with one joint for each of them"
-                )
             if j:
                 first = joint.idx_v
                 S = np.array(data.joints[j].S).reshape(6, -1)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
 from typing import Any, Literal, TypeAlias
 
 import coal
@@ -18,7 +17,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from pin_metaik.collision.cache import Arrays, kept
-from pin_metaik.collision.extent import box_of
+from pin_metaik.collision.extent import box_of, corners_of
 from pin_metaik.collision.interior import Interior
 from pin_metaik.collision.mesh import convex, convex_hull, flat, triangles_of
 
@@ -55,12 +54,7 @@ class Solid:
     @property
     def corners(self) -> NDArray[np.float64]:
         """(k, 3) points whose convex hull is around it, in its frame, m: the corners of its hull, or of its box."""
-        if isinstance(self.hull, coal.ConvexBase):
-            points: NDArray[np.float64] = np.array(self.hull.points())
-            return points
-        signs = np.array(list(product((-1.0, 1.0), repeat=3)))
-        corners: NDArray[np.float64] = self.box[:3] + signs * self.box[3:6]
-        return corners
+        return corners_of(self.hull)
 
     @cached_property
     def interior(self) -> Interior:

@@ -10,6 +10,7 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from pin_metaik.ik.goals.pose import DEFAULT_TOLERANCE, FREE, Tolerance
+from pin_metaik.ik.leaves import leaves
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.solver import DEFAULT_SOLVER, IKSolver
@@ -17,8 +18,9 @@ from pin_metaik.ik.starts import drawn
 from pin_metaik.randomness import Rng
 from pin_metaik.watching import Progress, Watch, tell
 
-WIDEST, MOST = 48, 72  # solutions in a layer, and in one that is widened
+WIDEST, MOST, LEAVES = 48, 72, 144  # solutions in a layer, in one that is widened, and in one with self-motions
 AROUND = 64  # poses before and after a break whose layers are widened
+TRACED, POINTS = 12, 72  # poses whose self-motions are traced, and points of these for one pose
 FRESH = 24  # starts from the atlas and as many random ones for a layer of its own
 APART = 1e-2  # rad or m between solutions of one layer
 EVALUATIONS = 10_000  # for one layer, each way, if no solver says otherwise
@@ -116,6 +118,47 @@ class Layers:
             if i + 1 < len(self.problems):
                 self._add(i, self.problems[i].whole, self.found[i + 1], MOST)
 
+    def trace(self, breaks: Collection[int], watch: Watch | None) -> None:
+        """Add points of the self-motions of some poses, and follow each to the poses before and after.
+
+        Args:
+            breaks: Poses that are not reached from the one before; the self-motions of both, and of poses that still
+                have no solution, are traced.
+            watch: Called with poses done and in all.
+
+        Raises:
+            Stopped: The watch says so; the layers are those so far.
+        """
+        ends = {i for k in breaks for i in (k - 1, k)}
+        wanted = sorted(ends | {i for i, layer in enumerate(self.found) if not len(layer)})
+        traced = 0
+        for done, i in enumerate(wanted):
+            tell(watch, Progress(done, len(wanted), label="along self-motions"))
+            problem = self.problems[i]
+            if (
+                traced == TRACED
+                or (i not in ends and len(self.found[i]))
+                or problem.refuted not in (None, Proof.LIMITS)
+            ):
+                continue
+            points = self._beside(i, leaves(problem, self.base, DRIFT * float(self.bound.min()), POINTS))
+            traced += bool(len(points))
+            self._take(i, points[: LEAVES - len(self.found[i])])
+            for way in (1, -1):
+                self._follow(i, way)
+
+    def _follow(self, i: int, way: int) -> None:
+        """Follow the solutions of a pose to those after (``way`` 1) or before (-1) it, as far as any lead."""
+        for k in range(i + way, i + way * (AROUND + 1), way):
+            if not 0 <= k < len(self.problems) or not len(self.found[k - way]):
+                break
+            self._add(k, self.problems[k], self.found[k - way], LEAVES)
+
+    def _beside(self, i: int, X: Floats) -> Floats:
+        """Solutions X (s, n) of a pose as the copies by whole turns nearest to what is known there or next to it."""
+        known = [layer for layer in self.found[max(i - 1, 0) : i + 2] if len(layer)]
+        return self.problems[i].limits.nearest_turns(X, known[0][0]) if known else X
+
     @property
     def _none(self) -> Floats:
         return np.empty((0, self.problems[0].chain.n))
@@ -159,13 +202,19 @@ class Layers:
         found = np.empty((room, aim.chain.n))
         found[: len(layer)] = layer
         new = found[len(layer) : self._gather(aim, starts, found, len(layer))]
-        problem = self.problems[i]
-        if problem.world is not None or aim is not problem:
-            verdicts = [problem.verdict(q) for q in problem.chain.q(new, self.base)]
-            touching = [x for x, verdict in zip(new, verdicts, strict=True) if verdict.collides]
-            if touching and not len(layer):
-                self.colliding.setdefault(i, touching[0])
-            new = new[[verdict.accepted for verdict in verdicts]]
+        if self.problems[i].world is not None or aim is not self.problems[i]:
+            self._take(i, new)
+        else:
+            self.found[i] = np.concatenate([layer, new])
+
+    def _take(self, i: int, new: Floats) -> None:
+        """Add those coordinates new (s, n) to a layer that are accepted."""
+        problem, layer = self.problems[i], self.found[i]
+        verdicts = [problem.verdict(q) for q in problem.chain.q(new, self.base)]
+        touching = [x for x, verdict in zip(new, verdicts, strict=True) if verdict.collides]
+        if touching and not len(layer):
+            self.colliding.setdefault(i, touching[0])
+        new = new[[verdict.accepted for verdict in verdicts]]
         if len(new):
             self.found[i] = np.concatenate([layer, new])
             self.colliding.pop(i, None)

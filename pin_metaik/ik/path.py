@@ -1,7 +1,8 @@
 """A sequence of poses with bounded joint steps, or the places where there is none, and why.
 
 Every pose gets a layer of solutions, and the best way through the layers is found. Where that has breaks, layers of
-poses that leave a choice are widened first: to other targets within their tolerances, and along self-motions.
+poses that leave a choice are widened first: to other targets within their tolerances, and a little along self-motions.
+Where that does not do, whole self-motions are traced, and followed to the poses around.
 """
 
 from __future__ import annotations
@@ -125,7 +126,8 @@ def solve_ik_path(
     """Follow a sequence of poses without jumps, in a world without collisions at the poses and between them.
 
     The middle of tolerances is aimed at. Only if the path would break, other targets within them are tried, and
-    solutions along the self-motions of a chain with more joints than the targets need.
+    solutions along the self-motions of a chain with more joints than the targets need; of one with one joint more, or
+    one free axis, all self-motions of the poses at the break, in a world every stretch of them that is free.
 
     Args:
         chain: The joints to move and the frame to place.
@@ -169,9 +171,10 @@ def solve_ik_path(
     try:
         layers.fill(q0 is not None, watch)
         way = ways.best()
-        if (way.breaks or len(way.rows) < len(problems)) and layers.flexible:
-            layers.widen(way.breaks, watch)
-            way = min(way, replace(ways).best(), key=lambda one: (-len(one.rows), len(one.breaks)))
+        for more in (layers.widen, layers.trace):
+            if (way.breaks or len(way.rows) < len(problems)) and layers.flexible:
+                more(way.breaks, watch)
+                way = min(way, replace(ways).best(), key=lambda one: (-len(one.rows), len(one.breaks)))
     except Stopped:
         interrupted = True
         way = way if way.rows else ways.best()

@@ -362,7 +362,9 @@ def _rows(counts: tuple[tuple[bool, ...], ...]) -> NDArray[np.int64]:
 
 def _sorted_out(asked: Asked) -> tuple[object, tuple[Goal, ...], tuple[Wish, ...], bool]:
     """The targets that somebody asks for, goals of other kinds, wishes, and whether the targets are a list of them."""
-    if isinstance(asked, Wish) or (isinstance(asked, Goal) and not isinstance(asked, Target)):
+    if isinstance(asked, Target | pin.SE3):  # what comes most; asking what has a goal's methods takes 5 us
+        return asked, (), (), False
+    if isinstance(asked, Wish | Goal):
         asked = [asked]
     kinds = Target, pin.SE3, Goal, Wish
     if not isinstance(asked, (list, tuple)) or not any(isinstance(one, kinds) for one in asked):

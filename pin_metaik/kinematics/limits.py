@@ -75,7 +75,7 @@ class Limits:
         """Whether no joint can move."""
         return len(self.stuck) == len(self.names)
 
-    @property
+    @cached_property
     def periodic(self) -> NDArray[np.bool_]:
         """(n,) True for a coordinate that returns after a turn and has no limits: a continuous joint."""
         return self.multi_turn & np.isinf(self.lower) & np.isinf(self.upper)

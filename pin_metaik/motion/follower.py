@@ -1,4 +1,4 @@
-"""FollowerStatus a target that moves, tick by tick: for teleoperation and servoing."""
+"""Follow a target that moves, tick by tick: for teleoperation and servoing."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from pin_metaik.ik.problem import check_world
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.model import as_configuration
 from pin_metaik.motion.step import FollowerStatus, FollowerStep
-from pin_metaik.motion.stops import Pair, Stopping, Stops, Surroundings
+from pin_metaik.motion.stops import Stopping, Stops, Surroundings
 from pin_metaik.optimize.settings import positive
 from pin_metaik.randomness import Rng
 from pin_metaik.timing.limits import MotionLimits
@@ -31,7 +31,10 @@ SWITCHES = 32  # solutions to choose from, at most
 THERE = 1e-9  # rad or m from a configuration that is moved to
 GENTLE = 0.25  # of the greatest speed, at most, towards the posture
 NO_MOVES = np.empty((0, 0), dtype=np.int64)
-NOTHING_NEAR = Surroundings({}, np.empty((0, 10)), np.empty((0, 2), dtype=np.int64))
+NO_ROOMS = np.empty(0)
+NOTHING_NEAR = Surroundings(
+    np.empty((0, 3), dtype=np.int64), NO_ROOMS, NO_ROOMS, np.empty((0, 12)), np.empty((0, 10)), NO_MOVES.reshape(0, 2)
+)
 
 
 @checked
@@ -244,7 +247,7 @@ class Follower:
         if self._stops is None:
             return NOTHING_NEAR
         fastest = np.minimum(np.abs(self.v) + self._motion[1], self.limits.velocity)
-        return self._stops.around(q, self._stopping(q, fastest).way(0.0, math.inf))
+        return self._stops.around(self._stopping(q, fastest))
 
     def _stopping(self, q: NDArray[np.float64], v: NDArray[np.float64]) -> Stopping:
         return Stopping(self.chain, q, v, self._motion[1], self._dt)
@@ -255,13 +258,13 @@ class Follower:
         """Take the speeds of the tick as far as the robot can stop after it: which part, and where it leads (nq,)."""
         wanted, braked = self._out[0], self._out[1]
         share = 1.0
-        if around.rooms and self._stops is not None:
-            share = self._share(self._stops, q, around.rooms)
+        if self._stops is not None and len(around.pairs):
+            share = self._share(self._stops, q, around)
         self.v = wanted.copy() if share == 1.0 else braked + share * (wanted - braked)
         limits = chain.limits
         return share, chain.q(np.minimum(np.maximum(x + self._dt * self.v, limits.lower), limits.upper), q)
 
-    def _share(self, stops: Stops, q: NDArray[np.float64], rooms: dict[Pair, float]) -> float:
+    def _share(self, stops: Stops, q: NDArray[np.float64], around: Surroundings) -> float:
         """The largest share, of those tried, of the change from braking to the speeds wanted, that is proved free."""
         wanted, braked = self._out[0], self._out[1]
 
@@ -269,10 +272,10 @@ class Follower:
             return self._stopping(q, braked + share * (wanted - braked))
 
         for share in SHARES:
-            if stops.free(rooms, stopping(share)):
+            if stops.free(around, stopping(share)):
                 return share
-        tiny = SHARES[-1] * stops.harmless(rooms, stopping(SHARES[-1]))  # from rest, it is free without a look
-        return tiny if stops.free(rooms, stopping(tiny)) else 0.0
+        tiny = SHARES[-1] * stops.harmless(around, stopping(SHARES[-1]))  # from rest, it is free without a look
+        return tiny if stops.free(around, stopping(tiny)) else 0.0
 
     def _stopped(self) -> tuple[str, ...]:
         """Names of the joints that stand at limits which the way leads beyond."""

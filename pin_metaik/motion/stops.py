@@ -3,69 +3,63 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple, TypeAlias, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.collision.solids import Placed
+from pin_metaik.collision.travel import Travel
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.joints import leader_of, parts_of
-from pin_metaik.motion.levers import Levers, PairLevers
+from pin_metaik.motion.rooms import INFLUENCE, Rooms
+from pin_metaik.motion.screws import ChainScrews
 
-STALE = 0.2  # of a distance that bodies may have moved until it is measured again
-INFLUENCE = 0.1  # m; bodies farther apart beyond their margin do not slow anything down
 DAMPING = 4.0  # 1/s; speed of approach that a metre of distance beyond the clearance allows
 SHRINKING = 0.5  # of the distance that is left within the clearance, what must be left when the robot stands
-ROUNDING = 1e-6  # m
 LOOKS = 4  # times that a braking motion is cut in two
-
-Pair: TypeAlias = tuple[int, int, int]
 
 
 class Surroundings(NamedTuple):
     """What is near a configuration.
 
     Attributes:
-        rooms: Distance beyond its margin (m) of each pair that may matter, by numbers of its bodies and of the pair.
-        near: (p, 10) and ``carriers`` (p, 2): those within ``INFLUENCE``, as ``kernel.aim`` takes them.
+        pairs: (p, 3) pairs of bodies that may matter: their numbers, and the row among the pairs that move or -1.
+        rooms: (p,) distances beyond their margins that they have at least, m.
+        travel: (p,) by how much they may come nearer until the robot stands, m.
+        joints: (J, 12) where the joints are.
+        near: (k, 10) and ``carriers`` (k, 2): the pairs within ``INFLUENCE``, as ``kernel.aim`` takes them.
     """
 
-    rooms: dict[Pair, float]
+    pairs: NDArray[np.int64]
+    rooms: NDArray[np.float64]
+    travel: NDArray[np.float64]
+    joints: NDArray[np.float64]
     near: NDArray[np.float64]
     carriers: NDArray[np.int64]
 
 
-class Known(NamedTuple):
-    """A distance that was measured.
+class Moment(NamedTuple):
+    """A moment of a braking motion.
 
     Attributes:
-        room: Beyond the margin, m.
-        gone: (K,) the way that the joints had gone by then, each by itself, rad or m.
-        row: What is near, as ``kernel.aim`` takes it; None where two surfaces cross.
-        carriers: Numbers of the joints that carry the two.
+        tick: After so many ticks.
+        joints: (J, 12) where the joints are.
+        rooms: (p,) of the pairs in question, m.
     """
 
-    room: float
-    gone: NDArray[np.float64]
-    row: list[float] | None
-    carriers: tuple[int, int]
-
-
-class At(NamedTuple):
-    """A moment of a braking motion: after so many ticks, and the distances (m) of the pairs that are in question."""
-
     tick: float
-    rooms: dict[Pair, float]
+    joints: NDArray[np.float64]
+    rooms: NDArray[np.float64]
 
 
 class Stops:
     """What a chain's robot has around it, and whether it can stop there.
 
-    Two bodies that are farther apart than they can come nearer in a motion (see ``Levers``), the distances at its two
-    ends added up, do not touch in between; and what cannot be told so is looked at in the middle. For the same reason a
-    distance that was measured some ticks ago is good for a while, less what the bodies may have moved since.
+    Two bodies that are farther apart than they can come nearer in a motion (see ``Travel``), the distances at its two
+    ends added up, do not touch in between; and what cannot be told so is looked at in the middle. Nearest points are
+    searched for only where what is known already (see ``Rooms``) does not do.
 
     Attributes:
         chain: The chain.
@@ -77,142 +71,161 @@ class Stops:
     def __init__(self, chain: Chain, world: CollisionWorld, clearance: float) -> None:
         self.chain, self.world, self.clearance = chain, world, clearance
         self.moves = _moves(chain)
-        self.levers = Levers(chain, world.checker)
-        self._checker = world.checker
-        self._known: dict[Pair, Known] = {}
         self._others = np.isnan(chain.q(np.zeros(chain.n), np.full(chain.model.nq, np.nan)))  # entries of other joints
         self._at: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
-        self._gone = self.levers.way(np.zeros(chain.n))
+        self._lay_out()
 
-    def around(self, q: NDArray[np.float64], way: NDArray[np.float64]) -> Surroundings:
-        """Distances at q (nq,) of the pairs that come near, or may until coordinates have changed by way (n,)."""
-        self._went_to(q)
-        checker, levers, way = self._checker, self.levers.everywhere, self.levers.way(way)
-        needed = PairLevers(levers.own @ way + self.clearance, levers.against @ way + self.clearance)
-        most = max(INFLUENCE, needed.own.max(initial=0.0), needed.against.max(initial=0.0))
-        placed = checker.solids.place(q)
-        rooms: dict[Pair, float] = {}
-        near: list[Known] = []
-        found = placed.near(checker.asked, most)
-        for (i, j, k), least in zip(found, placed.least[: len(found)].tolist(), strict=True):
-            if least - checker.margin_of(i, j, k) > max(INFLUENCE, float(needed.of(i, k))):
-                continue
-            known = self._known.get((i, j, k))
-            if known is None or (drift := float(levers.of(i, k) @ (self._gone - known.gone))) > STALE * known.room:
-                known, drift = self._measured(placed, i, j, k), 0.0
-                self._known[i, j, k] = known
-            rooms[i, j, k] = known.room - drift
-            if known.row is not None and known.room < INFLUENCE:
-                near.append(known)
-        rows = np.array([known.row for known in near]).reshape(-1, 10)
-        carriers = np.array([known.carriers for known in near], dtype=np.int64).reshape(-1, 2)
-        return Surroundings(rooms, rows, carriers)
+    def _lay_out(self) -> None:
+        """Begin anew with the world as it is now."""
+        carriers = self.world.passages.carriers
+        self._checker, self._travel, self._rooms = carriers.checker, Travel(carriers), Rooms(carriers.checker)
+        self._screws = ChainScrews(self.chain, carriers.screws)
+        self._joint_of = np.array([body.joint for body in self._checker.bodies], dtype=np.int64)
+        self._joint_of[len(self._checker.solids.moving) :] = 0
 
-    def _went_to(self, q: NDArray[np.float64]) -> None:
-        """Add to the way that the joints have gone; forget distances if anything else has moved or changed."""
-        x, others = self.chain.x(q), q[self._others]
+    def around(self, stopping: Stopping) -> Surroundings:
+        """Distances, where a braking motion begins, of the pairs that come near, or may until it ends."""
         if self._checker is not self.world.checker:
-            self._checker = self.world.checker
-            self.levers = Levers(self.chain, self._checker)
-            self._known.clear()
+            self._lay_out()
+        placed = self._checker.solids.place(stopping.q0)
+        self._went_to(stopping.x, stopping.q0[self._others], placed)
+        self._travel.measure(1.0, placed.joints, self._screws.along(stopping.way(0.0, math.inf)))
+        near = self._rooms.near(placed, self._travel, self.clearance)
+        close = (near.rows[:, 9] < INFLUENCE) & ~np.isnan(near.rows[:, 0])
+        rows, carriers = near.rows[close], self._joint_of[near.pairs[close, :2]]
+        rows[:, 9] = DAMPING * (rows[:, 9] - self.clearance)
+        return Surroundings(near.pairs, near.rooms, near.travel, placed.joints.copy(), rows, carriers)
+
+    def _went_to(self, x: NDArray[np.float64], others: NDArray[np.float64], placed: Placed) -> None:
+        """Say how far the bodies have moved at most; forget distances if other joints than the chain's have."""
         if self._at is None or not np.array_equal(others, self._at[1]):
-            self._known.clear()
+            self._rooms.forget()
         else:
-            self._gone = self._gone + self.levers.way(np.abs(self.chain.limits.way(self._at[0], x)))
+            way = np.abs(self.chain.limits.way(self._at[0], x))
+            self._travel.measure(1.0, placed.joints, self._screws.along(way))
+            self._rooms.went(self._travel)
         self._at = x, others
 
-    def _measured(self, placed: Placed, i: int, j: int, k: int) -> Known:
-        """The distance of a pair where it is placed now."""
-        checker = self._checker
-        room, normal = checker.room(placed, i, j, k, self.clearance), placed.normal
-        first, second = placed.points
-        row = None
-        if not 0.5 < float(normal @ normal) < 2.0 and room > ROUNDING:  # meshes have none
-            normal = (second - first) / np.linalg.norm(second - first)
-        if 0.5 < float(normal @ normal) < 2.0:  # surfaces that cross have none either way
-            row = [*normal, *first, *second, DAMPING * (room - self.clearance)]
-        return Known(room, self._gone, row, (checker.joint_of(i), checker.joint_of(j)))
-
-    def free(self, rooms: dict[Pair, float], stopping: Stopping) -> bool:
+    def free(self, around: Surroundings, stopping: Stopping) -> bool:
         """Whether a braking motion is proved free, and ends not much nearer to anything than it begins.
 
         Args:
-            rooms: Distances where it begins, of all pairs that it may bring together.
+            around: What is near where it begins.
             stopping: The motion.
         """
-        way = self.levers.way(stopping.way(0.0, math.inf))
-        pending = self._pending(rooms, self.levers.everywhere, way)
-        if not pending:
+        left = SHRINKING * np.minimum(self.clearance, around.rooms)  # what must be left at its end, m
+        pending = np.flatnonzero((around.travel > 0.0) & (around.rooms - around.travel < left))
+        if not pending.size:
             return True
-        levers = self.levers.near(stopping.q(0.0), way)
-        pending = self._pending(pending, levers, way)
-        if not pending:
+        pairs, rooms, left = around.pairs[pending], around.rooms[pending], left[pending]
+        travel = self._travels(pairs, around.joints, stopping.way(0.0, math.inf))
+        pending = np.flatnonzero((travel > 0.0) & (rooms - travel < left))
+        if not pending.size:
             return True
-        ends = self._rooms(stopping.q(math.inf), list(pending))
-        for pair, room in pending.items():
-            if ends[pair] <= room if room <= 0.0 else ends[pair] < SHRINKING * min(self.clearance, room):
-                return False
-        apart = {pair: room for pair, room in pending.items() if room > 0.0}  # what collides may part
-        return self._free(stopping, levers, At(0.0, apart), At(stopping.ticks, ends), LOOKS)
+        pairs, rooms, left, travel = pairs[pending], rooms[pending], left[pending], travel[pending]
+        left = np.where(rooms > 0.0, left, rooms)  # what collides may part
+        placed = self._checker.solids.place(stopping.q(math.inf))
+        ends = self._roomy(placed, pairs, left, travel - rooms)
+        if ends is None:
+            return False
+        apart = rooms > 0.0
+        begin = Moment(0.0, around.joints, rooms[apart])
+        return self._between(stopping, pairs[apart], travel[apart], begin, stopping.ticks, ends[apart])
 
-    def _pending(self, rooms: dict[Pair, float], levers: PairLevers, way: NDArray[np.float64]) -> dict[Pair, float]:
-        """The pairs that may come nearer, while joints move by way (K,), than they may."""
-        own, against = levers.own @ way, levers.against @ way
-        pending = {}
-        for pair, room in rooms.items():
-            i, _, k = pair
-            travel = float(own[k] if k >= 0 else against[i])
-            if travel > 0.0 and room - travel < SHRINKING * min(self.clearance, room):
-                pending[pair] = room
-        return pending
-
-    def harmless(self, rooms: dict[Pair, float], stopping: Stopping) -> float:
+    def harmless(self, around: Surroundings, stopping: Stopping) -> float:
         """The share of a braking motion that takes no pair more of its distance than it may; at most 1."""
-        way, levers = self.levers.way(stopping.way(0.0, math.inf)), self.levers.everywhere
-        share = 1.0
-        for (i, _, k), room in rooms.items():
-            travel = float(levers.of(i, k) @ way)
-            if travel > 0.0:
-                share = min(share, max((1.0 - SHRINKING) * room, 0.0) / travel)
-        return share
+        travel = self._travels(around.pairs, around.joints, stopping.way(0.0, math.inf))
+        comes = travel > 0.0
+        spare = (1.0 - SHRINKING) * np.maximum(around.rooms[comes], 0.0)
+        return float((spare / travel[comes]).min(initial=1.0))
 
-    def _free(self, stopping: Stopping, levers: PairLevers, a: At, b: At, looks: int) -> bool:
-        """Whether the pairs of the first of two moments are proved free between them."""
-        way = self.levers.way(stopping.way(a.tick, b.tick))
-        left = [(i, j, k) for i, j, k in a.rooms if a.rooms[i, j, k] + b.rooms[i, j, k] <= levers.of(i, k) @ way]
-        if not left:
+    def _travels(
+        self, pairs: NDArray[np.int64], joints: NDArray[np.float64], way: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """By how much pairs (p, 3) come nearer at most, m, from where joints are on, while coordinates change (n,)."""
+        self._travel.measure(1.0, joints, self._screws.along(way))
+        own, moved = pairs[:, 2], self._travel.moved[pairs[:, 0], 0]
+        return np.where(own >= 0, self._travel.reaches[own], moved) if len(self._travel.reaches) else moved
+
+    def _roomy(
+        self, placed: Placed, pairs: NDArray[np.int64], left: NDArray[np.float64], enough: NDArray[np.float64]
+    ) -> NDArray[np.float64] | None:
+        """Rooms (p,) of pairs (p, 3) where they are placed, m; None if one has no more than must be left.
+
+        Args:
+            placed: The bodies.
+            pairs: (p, 3).
+            left: (p,) what must be left, m.
+            enough: (p,) m; once a pair is found to have more, no more is looked for.
+        """
+        enough = np.maximum(left, enough)
+        rooms = self._rooms.least(placed, pairs, enough)
+        for r in np.argsort(rooms - enough).tolist():  # the narrowest first: where there is none, that is soon known
+            if rooms[r] > enough[r]:
+                break
+            i, j, k = pairs[r].tolist()
+            rooms[r] = max(rooms[r], self._checker.room(placed, i, j, k, self.clearance))
+            if rooms[r] <= left[r]:
+                return None
+        return rooms
+
+    def _between(
+        self,
+        stopping: Stopping,
+        pairs: NDArray[np.int64],
+        travel: NDArray[np.float64],
+        begin: Moment,
+        end: float,
+        ends: NDArray[np.float64],
+        looks: int = LOOKS,
+    ) -> bool:
+        """Whether pairs (p, 3) are proved free between two moments.
+
+        Args:
+            stopping: The motion.
+            pairs: (p, 3).
+            travel: (p,) by how much they come nearer in between, at most, m.
+            begin: The first of the moments.
+            end: The tick of the other, ...
+            ends: (p,) ... and the rooms there, m.
+            looks: How often what lies between may be cut in two.
+        """
+        doubted = np.flatnonzero(begin.rooms + ends <= travel)
+        if not doubted.size:
             return True
-        tick = math.floor(0.5 * (a.tick + b.tick))
-        if looks == 0 or tick in (a.tick, b.tick):
+        tick = math.floor(0.5 * (begin.tick + end))
+        if looks == 0 or tick in (begin.tick, end):
             return False
-        middle = At(tick, self._rooms(stopping.q(tick), left))
-        if min(middle.rooms.values()) <= 0.0:
+        pairs, rooms, ends = pairs[doubted], begin.rooms[doubted], ends[doubted]
+        placed = self._checker.solids.place(stopping.q(tick))
+        joints = placed.joints.copy()
+        there = self._travels(pairs, begin.joints, stopping.way(begin.tick, tick))
+        onward = self._travels(pairs, joints, stopping.way(tick, end))
+        middle = self._roomy(placed, pairs, np.zeros(len(pairs)), np.maximum(there - rooms, onward - ends))
+        if middle is None:
             return False
-        begin = At(a.tick, {pair: a.rooms[pair] for pair in left})
-        parts = (begin, middle), (middle, b)
-        return all(self._free(stopping, levers, *part, looks - 1) for part in parts)
-
-    def _rooms(self, q: NDArray[np.float64], pairs: list[Pair]) -> dict[Pair, float]:
-        checker = self._checker
-        placed = checker.solids.place(q)
-        return {pair: checker.room(placed, *pair, needed=self.clearance) for pair in pairs}
+        first, second = begin._replace(rooms=rooms), Moment(tick, joints, middle)
+        return self._between(stopping, pairs, there, first, tick, middle, looks - 1) and self._between(
+            stopping, pairs, onward, second, end, ends, looks - 1
+        )
 
 
 class Stopping:
     """The motion of a chain that goes at some speeds for one tick and brakes from then on.
 
     Attributes:
-        x: (n,) where it begins.
+        q0: (nq,) where it begins.
+        x: (n,) its coordinates there.
         ticks: After which it stands.
     """
 
     def __init__(
-        self, chain: Chain, q: NDArray[np.float64], v: NDArray[np.float64], dv: NDArray[np.float64], dt: float
+        self, chain: Chain, q0: NDArray[np.float64], v: NDArray[np.float64], dv: NDArray[np.float64], dt: float
     ) -> None:
         from pin_metaik.motion.kernel import stopping
 
-        self.x, self.ticks = chain.x(q), float(np.floor(np.abs(v) / dv).max() + 1.0)
-        self._chain, self._q, self._given = chain, q, (v, dv, dt)
+        self.q0, self.x, self.ticks = q0, chain.x(q0), float(np.floor(np.abs(v) / dv).max() + 1.0)
+        self._chain, self._given = chain, (v, dv, dt)
         self._stopping = cast(Any, stopping).compiled()  # a frame less
 
     def at(self, tick: float) -> NDArray[np.float64]:
@@ -223,12 +236,12 @@ class Stopping:
 
     def way(self, a: float, b: float) -> NDArray[np.float64]:
         """By how much (n,) the coordinates change between two ticks."""
-        way: NDArray[np.float64] = np.abs(self.at(b) - self.at(a))
+        way: NDArray[np.float64] = np.abs(self.at(b) - (self.at(a) if a else self.x))
         return way
 
     def q(self, tick: float) -> NDArray[np.float64]:
         """The configuration (nq,) after so many ticks."""
-        return self._chain.q(self.at(tick), self._q)
+        return self._chain.q(self.at(tick), self.q0)
 
 
 def _moves(chain: Chain) -> NDArray[np.int64]:

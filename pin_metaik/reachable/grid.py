@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidBounds, InvalidSetting
+from pin_metaik.kinematics import Chain
 from pin_metaik.optimize.settings import few, positive
 
 PSI = 1.533751168755204288118041  # of the spirals: psi^4 = psi + 4
@@ -44,6 +45,28 @@ class Grid:
             )
         if np.prod((upper - lower) / self.spacing + 1.0) > MOST:
             raise InvalidSetting(f"a grid has at most {MOST:,} positions: take a larger spacing than {self.spacing}")
+
+    @staticmethod
+    @checked
+    def around(chain: Chain, spacing: float) -> Grid:
+        """All positions that a chain could reach at most, at whole multiples of a spacing (m).
+
+        Args:
+            chain: Whose first frame is to be placed.
+            spacing: Distance between neighbours, m.
+
+        Raises:
+            InvalidSetting: If the spacing is not above 0, there are more than ten million positions, or nothing bounds
+                how far the chain reaches.
+        """
+        positive("spacing", spacing)
+        reach = chain.reach(0, False)
+        if not math.isfinite(reach.most):
+            raise InvalidSetting("nothing bounds how far this chain reaches: give a grid its corners")
+        low, high = (np.floor(side * (reach.anchor + side * reach.most) / spacing) * side for side in (-1.0, 1.0))
+        a, b, c = (spacing * low).tolist()
+        d, e, f = (spacing * high).tolist()
+        return Grid((a, b, c), (d, e, f), spacing)
 
     @property
     def shape(self) -> tuple[int, int, int]:

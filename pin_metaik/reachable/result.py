@@ -12,11 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.ik import IKStatus
-from pin_metaik.output import writable
 from pin_metaik.plain import fields_of
-
-STATUSES = (None, *IKStatus)
-"""What the numbers in ``Reachability.status`` mean; 0: not looked at."""
+from pin_metaik.reachable.files import STATUSES, read_map, write_map
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,23 +68,16 @@ class Reachability:
 
     @checked
     def save(self, path: str | Path) -> Path:
-        """Write it as NumPy's compressed ``.npz``.
+        """Write it as its ending says: NumPy's compressed ``.npz``, or ``.parquet``, a table with a row for each pose.
 
         Raises:
+            InvalidSetting: If the ending is neither.
+            MissingExtra: If it is Parquet and pyarrow is not installed.
             CannotWrite: If the file cannot be written.
         """
-        where = writable(path)
-        with where.open("wb") as file:
-            np.savez_compressed(
-                file,
-                positions=self.positions,
-                orientations=self.orientations,
-                status=self.status,
-                manipulability=self.manipulability,
-                shape=np.array(self.shape),
-                seconds=np.array(self.seconds),
-            )
-        return where
+        names = "positions", "orientations", "status", "manipulability"
+        arrays = {name: getattr(self, name) for name in names}
+        return write_map(path, {**arrays, "shape": np.array(self.shape), "seconds": np.array(self.seconds)})
 
     @staticmethod
     @checked
@@ -96,22 +86,22 @@ class Reachability:
 
         Raises:
             InvalidSetting: If there is no such file, or it holds no map.
+            MissingExtra: If it is Parquet and pyarrow is not installed.
         """
+        arrays = read_map(path)
         try:
-            with np.load(path, allow_pickle=False) as file:
-                k, m = file["status"].shape
-                a, b, c = (int(n) for n in file["shape"])
-                found = Reachability(
-                    array("positions", file["positions"], k, 3),
-                    array("orientations", file["orientations"], "...", 3, 3).reshape(-1, 3, 3),
-                    file["status"].astype(np.uint8),
-                    file["manipulability"].astype(np.float32).reshape(k, m),
-                    (a, b, c),
-                    float(file["seconds"]),
-                )
-        except (OSError, ValueError, KeyError, EOFError, TypeError) as error:
+            k, m = arrays["status"].shape
+            a, b, c = (int(n) for n in arrays["shape"])
+            return Reachability(
+                array("positions", arrays["positions"], k, 3),
+                array("orientations", arrays["orientations"], "...", 3, 3).reshape(-1, 3, 3),
+                arrays["status"].astype(np.uint8),
+                arrays["manipulability"].astype(np.float32).reshape(k, m),
+                (a, b, c),
+                float(arrays["seconds"]),
+            )
+        except (ValueError, KeyError, TypeError) as error:
             raise InvalidSetting(f"{path} is not a map that Reachability.save has written: {error}") from None
-        return found
 
     def at(self, xyz: ArrayLike) -> float:
         """The share of orientations that is reached at the position of the map nearest to xyz (3,).

@@ -26,9 +26,10 @@ from pin_metaik.kinematics import Chain
 from pin_metaik.optimize.settings import one_of
 from pin_metaik.output import writable
 from pin_metaik.randomness import Rng, as_seed
+from pin_metaik.reachable.files import STATUSES
 from pin_metaik.reachable.grid import Grid, spread_rotations
 from pin_metaik.reachable.kept import Kept
-from pin_metaik.reachable.result import STATUSES, Reachability
+from pin_metaik.reachable.result import Reachability
 from pin_metaik.watching import Progress, Watch, ended, tell
 from pin_metaik.workers import Backend, check_jobs, need_joblib, worked
 

@@ -260,11 +260,11 @@ def test_no_body_moves_farther_than_its_bound(name: str) -> None:
         for fraction in np.linspace(begin, end, 25):
             for i, (here, there) in enumerate(zip(at, places(passage._at(fraction)), strict=True)):
                 moved = np.linalg.norm((there - here)[:3], axis=0).max()
-                assert moved <= passage._moved[i, 0] + 1e-12
-                tightest = max(tightest, moved / passage._moved[i, 0])
+                assert moved <= passage._travel.moved[i, 0] + 1e-12
+                tightest = max(tightest, moved / passage._travel.moved[i, 0])
     assert tightest > 0.5
     for (i, j), reach in zip(
-        own.tolist(), passage._reaches, strict=True
+        own.tolist(), passage._travel.reaches, strict=True
     ):  # the distance of two bodies of the last move
         solids, levels = world.checker.solids, world.checker.solids.levels
         here = solids.place(passage._at(0.5 * (begin + end))).distance(levels[i].hull, levels[j].hull)
@@ -287,7 +287,7 @@ def test_a_finger_that_mimics_the_other_moves_within_its_bound() -> None:
     passage.look(0.2, 0.6)
     for fraction in np.linspace(0.2, 0.6, 20):
         moved = np.linalg.norm(places(passage._at(fraction)) - places(passage._at(0.4)), axis=1)
-        assert (moved <= passage._moved[:, 0] + 1e-12).all()
+        assert (moved <= passage._travel.moved[:, 0] + 1e-12).all()
 
 
 @pytest.mark.parametrize("simplify", ["none", "convex", "capsule"])

@@ -8,6 +8,7 @@ from numpy.testing import assert_array_equal
 import pin_metaik as mik
 from benchmarks.collision_cases import gantry
 from benchmarks.collision_truth import Truth
+from benchmarks.path_cases import among_balls, without_self_motions
 from pin_metaik.collision import Box, Obstacle, load_scene
 from pin_metaik.errors import InvalidSetting, InvalidTarget
 from pin_metaik.ik import BreakReason
@@ -227,3 +228,17 @@ def test_a_chain_with_joints_to_spare_uses_them_to_keep_clear() -> None:
     assert world.clear_between_batch(path.q[:-1], path.q[1:]).all()
     free = [mik.Target(pose, orientation_tolerance=(1e-5, 1e-5, np.inf)) for pose in poses]
     assert mik.solve_ik_path(chain, free, max_step=0.1, world=world)
+
+
+@pytest.mark.parametrize("seed", [1, 3])
+def test_where_only_the_middle_of_a_self_motion_is_free_the_path_goes_there(seed: int) -> None:
+    chain, robot = chain_of("panda"), robot_of("panda")
+    world, poses, known = among_balls(robot, chain, seed)
+    assert world.clear_between_batch(known[:-1], known[1:]).all()
+    assert not without_self_motions(chain, poses, world, 0.1)
+    path = mik.solve_ik_path(chain, poses, max_step=0.1, world=world)
+    assert path
+    assert world.clear_between_batch(path.q[:-1], path.q[1:]).all()
+    ends: list[float] = []
+    mik.solve_ik_path(chain, poses, max_step=0.1, world=world, watch=lambda at: ends.append(at.done / at.total))
+    assert max(ends) <= 1.0

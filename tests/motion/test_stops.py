@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
+import coal
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -10,7 +13,9 @@ from numpy.typing import NDArray
 
 import pin_metaik as mik
 from pin_metaik import collision
-from pin_metaik.motion.levers import Levers
+from pin_metaik.collision.travel import Carriers, Travel
+from pin_metaik.motion.rooms import Rooms
+from pin_metaik.motion.screws import ChainScrews
 from pin_metaik.motion.stops import Stopping, Stops
 
 RATE = 200.0
@@ -152,38 +157,134 @@ def sliding() -> mik.Robot:
     return mik.load_robot(f'<robot name="sliding">{links}{joints}</robot>')
 
 
-@pytest.mark.parametrize("name", ["panda", "ur5", "sliding"])
-def test_no_body_moves_farther_than_its_levers_allow(name: str) -> None:
-    robot = sliding() if name == "sliding" else mik.load_robot(name)
-    chain = mik.Chain(robot, "l4" if name == "sliding" else robot.frame)
+@dataclass
+class Jointed:
+    """A block on a joint of some kind, and a second one that turns on it."""
+
+    model: pin.Model
+    collision_model: pin.GeometryModel
+    name: str = "jointed"
+    srdf: None = None
+
+    @staticmethod
+    def by(joint: pin.JointModel) -> Jointed:
+        model, geometry, offset = pin.Model(), pin.GeometryModel(), pin.SE3(pin.exp3(np.ones(3)), np.array([0.3, 0, 0]))
+        for i, kind in enumerate((joint, pin.JointModelRY(), pin.JointModelRX())):
+            model.addJoint(i, kind, offset, f"joint_{i}")
+            frame = model.addFrame(pin.Frame(f"link_{i}", i + 1, 0, pin.SE3.Identity(), pin.FrameType.BODY))
+            block = coal.Box(0.2, 0.1, 0.3)
+            geometry.addGeometryObject(pin.GeometryObject(f"block_{i}", i + 1, frame, offset, block))
+        model.lowerPositionLimit, model.upperPositionLimit = np.full(model.nq, -1.0), np.full(model.nq, 1.0)
+        return Jointed(model, geometry)
+
+
+def composite() -> pin.JointModelComposite:
+    joint = pin.JointModelComposite(pin.JointModelRX(), pin.SE3.Identity())
+    offset = pin.SE3(pin.exp3(np.ones(3)), np.array([0.1, 0.2, 0.3]))
+    joint.addJoint(pin.JointModelPrismaticUnaligned(np.array([0.0, 0.6, 0.8])), offset)
+    joint.addJoint(pin.JointModelRUBZ(), offset)
+    return joint
+
+
+JOINTED = {
+    "planar": pin.JointModelPlanar(),
+    "floating": pin.JointModelFreeFlyer(),
+    "helical": pin.JointModelHelicalUnaligned(np.array([0.0, 0.6, -0.8]), 0.1),
+    "composite": composite(),
+}
+
+
+@pytest.mark.parametrize("name", ["panda", "ur5", "sliding", *JOINTED])
+def test_no_body_travels_farther_than_it_is_said_to(name: str) -> None:
+    robot = Jointed.by(JOINTED[name]) if name in JOINTED else sliding() if name == "sliding" else mik.load_robot(name)
+    frame = "link_2" if name in JOINTED else "l4" if name == "sliding" else mik.load_robot(name).frame
+    chain = mik.Chain(robot.model, frame)
     world = mik.CollisionWorld(robot)
-    levers, solids, rng = Levers(chain, world.checker), world.checker.solids, np.random.default_rng(0)
-    bodies, own = solids.moving, world.checker.asked.own
+    carriers = Carriers(world.checker)
+    screws, travel = ChainScrews(chain, carriers.screws), Travel(carriers)
+    solids, rng = world.checker.solids, np.random.default_rng(0)
+    bodies, own, tightest = solids.moving, world.checker.asked.own, 0.0
     for _ in range(20):
         x, y = chain.limits.box().sample(rng, 2)
         y = x + rng.choice([1.0, 0.1, 0.001]) * (y - x)
-        way = levers.way(np.abs(y - x))
-        points = [body.solid.box[:3] + rng.uniform(-1, 1, (4, 3)) * body.solid.box[3:6] for body in bodies]
+        points = [rng.choice(body.solid.corners, 4) for body in bodies]
         rows = [solids.place(chain.q(at)).poses[: len(bodies)].copy() for at in (x, y)]
         before, after = (
             [p @ row[:9].reshape(3, 3) + row[9:] for p, row in zip(points, one, strict=True)] for one in rows
         )
-        nearer = levers.near(chain.q(x), way)
-        for bound in (levers.everywhere, nearer):
-            for i in range(len(bodies)):
-                assert np.linalg.norm(after[i] - before[i], axis=1).max() <= bound.against[i] @ way + 1e-9
-            for k, (i, j) in enumerate(own):
-                gaps = (np.linalg.norm(now[i][:, None] - now[j][None], axis=2) for now in (before, after))
-                assert np.abs(np.subtract(*gaps)).max() <= bound.own[k] @ way + 1e-9
-        assert (nearer.own <= levers.everywhere.own + 1e-12).all()
+        travel.measure(1.0, solids.place(chain.q(x)).joints, screws.along(np.abs(y - x)))
+        for i in range(len(bodies)):
+            moved = np.linalg.norm(after[i] - before[i], axis=1).max()
+            assert moved <= travel.of(i, -1) + 1e-9
+            tightest = max(tightest, moved / max(travel.of(i, -1), 1e-9))
+        for k, (i, j) in enumerate(own):
+            gaps = (np.linalg.norm(now[i][:, None] - now[j][None], axis=2) for now in (before, after))
+            assert np.abs(np.subtract(*gaps)).max() <= travel.of(i, k) + 1e-9
+    assert tightest > 0.2
+
+
+@pytest.mark.parametrize("simplify", ["none", "convex", "capsule"])
+def test_what_is_known_of_a_distance_is_never_more_than_it(simplify: str) -> None:
+    """Along a random walk, on solids of all kinds, one of them concave; and half-spaces, planes and margins."""
+    robot = mik.load_robot("panda")
+    chain = mik.Chain(robot, robot.frame)
+    world = mik.CollisionWorld(robot, all_shapes(), simplify=simplify, margin=0.003, exact=simplify != "capsule")
+    carriers, rng = world.passages.carriers, np.random.default_rng(0)
+    rooms, travel, screws = Rooms(world.checker), Travel(carriers), ChainScrews(chain, carriers.screws)
+    checker, x, asked = world.checker, chain.x(HOME), 0
+    goal = x
+    for tick in range(150):
+        goal = chain.box.sample(rng, 1)[0] if tick % 30 == 0 else goal
+        step = np.clip(goal - x, -0.02, 0.02)
+        placed = checker.solids.place(chain.q(x + step))
+        travel.measure(1.0, placed.joints, screws.along(np.abs(step)))
+        rooms.went(travel)
+        travel.measure(1.0, placed.joints, screws.along(np.full(chain.n, 0.05)))
+        near = rooms.near(placed, travel, 0.01)
+        least = rooms.least(placed, near.pairs, np.full(len(near.pairs), np.inf))
+        for pair, room, part in zip(near.pairs.tolist(), near.rooms, least, strict=True):
+            a, b, c, d = checker.levels_of(*pair)
+            fine = (c, d) if checker.exact else (a, b)
+            there = placed.gap(*fine) - checker.margin_of(*pair)
+            asked += 1
+            assert part <= there + 1e-7 or (there <= 0.0 and part <= 1e-7)
+            assert room <= there + 1e-7 or there <= 0.0
+        x = x + step
+    assert asked > 500
+
+
+def all_shapes() -> list[collision.Obstacle]:
+    """One obstacle of every kind around panda."""
+    shapes = {
+        "box": (collision.Box((0.1, 0.2, 0.3)), (0.6, 0.3, 0.2)),
+        "ball": (collision.Sphere(0.1), (0.5, -0.4, 0.6)),
+        "cylinder": (collision.Cylinder(0.08, 0.4), (0.1, 0.6, 0.4)),
+        "capsule": (collision.Capsule(0.05, 0.4), (0.3, 0.1, 1.1)),
+        "cone": (collision.Cone(0.1, 0.3), (-0.4, 0.4, 0.5)),
+        "floor": (collision.HalfSpace((0.0, 0.0, 1.0), -0.02), (0.0, 0.0, 0.0)),
+        "curtain": (collision.Plane((1.0, 0.2, 0.0), -0.6), (0.0, 0.0, 0.0)),
+    }
+    outline = np.array([(0.0, 0.0), (0.3, 0.0), (0.3, 0.1), (0.1, 0.1), (0.1, 0.3), (0.0, 0.3)])  # an L
+    vertices = np.array([(x, y, z) for z in (0.0, 0.4) for x, y in outline])
+    flat = np.array([(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5)])
+    sides = [(k, (k + 1) % 6, 6 + k) for k in range(6)] + [((k + 1) % 6, 6 + (k + 1) % 6, 6 + k) for k in range(6)]
+    angle = collision.Mesh(vertices, np.concatenate([flat[:, ::-1], 6 + flat, sides]))
+    return [
+        *(collision.Obstacle(name, shape, at) for name, (shape, at) in shapes.items()),
+        collision.Obstacle("angle", angle, (0.45, -0.1, 0.1)),
+    ]
 
 
 def test_a_distance_that_is_remembered_is_never_larger_than_the_one_there_is() -> None:
     chain, world = walled()
-    follower, q = mik.Follower(chain, RATE, mik.MotionLimits.of(chain, acceleration=HARD), world), HOME
+    limits = mik.MotionLimits.of(chain, acceleration=HARD)
+    follower, q = mik.Follower(chain, RATE, limits, world), HOME
     start, rng = chain.placements(q)[0], np.random.default_rng(0)
     for _ in range(100):
         q = follower.step(pin.SE3(start.rotation, start.translation + rng.uniform(-0.2, 0.2, 3)), q).q
-        fresh = Stops(chain, world, 0.01).around(q, np.zeros(7)).rooms
-        known = follower._around(q).rooms
+        still = Stopping(chain, q, np.zeros(7), limits.acceleration / RATE, 1.0 / RATE)
+        there = Stops(chain, world, 0.01).around(still)
+        fresh = dict(zip(map(tuple, there.pairs.tolist()), there.rooms, strict=True))
+        around = follower._around(q)
+        known = dict(zip(map(tuple, around.pairs.tolist()), around.rooms, strict=True))
         assert all(known[pair] <= fresh[pair] + 1e-6 for pair in fresh.keys() & known.keys())

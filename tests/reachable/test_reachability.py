@@ -13,7 +13,7 @@ import pin_metaik as mik
 from pin_metaik.collision import Box, Obstacle
 from pin_metaik.errors import InvalidBounds, InvalidSetting
 from pin_metaik.reachable import Grid, Reachability, reachability, save_reachability, spread_rotations
-from pin_metaik.reachable.result import STATUSES
+from pin_metaik.reachable.files import STATUSES
 from tests.collision.worlds import robot_of
 from tests.robots_under_test import chain_of
 
