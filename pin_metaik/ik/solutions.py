@@ -9,14 +9,18 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.collect import collect
-from pin_metaik.ik.problem import Asked, IKProblem
+from pin_metaik.ik.goals.pose import Target
+from pin_metaik.ik.plain_all import ROOTS, all_of_plain
+from pin_metaik.ik.problem import Asked, IKProblem, check_world
 from pin_metaik.ik.proof import Proof
+from pin_metaik.ik.result import Parts
 from pin_metaik.ik.self_motion.curve import SelfMotionCurve
 from pin_metaik.ik.self_motion.motions import (
     MOTION_BUDGET,
@@ -34,6 +38,7 @@ from pin_metaik.randomness import Rng
 from pin_metaik.watching import Stopped, Watch
 
 DEFAULT_BUDGET = Budget(evaluations=200_000)
+ENOUGH = 10_000  # evaluations: more than descents from all roots of six joints take
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +54,10 @@ class IKSolutions:
             pose exactly counts only where nothing near it does.
         evaluations: Forward kinematics computed.
         seconds: Time taken, s.
-        problem: What was asked; out of a pickle, without its world, which has all meshes in it.
+        chain: The chain, with its held joints where the start has them.
+        given: What was asked; a pose as position and quaternion, which is cheaper than a copy: see ``problem``.
+        world: The world they must not collide in, if one was given. A pickle leaves it behind, as it has all meshes in
+            it.
         interrupted: Whether a watch ended the search.
     """
 
@@ -57,12 +65,23 @@ class IKSolutions:
     complete: Proof | None
     evaluations: int
     seconds: float
-    problem: IKProblem = field(repr=False)
+    chain: Chain = field(repr=False)
+    given: IKProblem | Target | Parts = field(repr=False)
+    world: CollisionWorld | None = field(default=None, repr=False)
     interrupted: bool = False
 
     def __getstate__(self) -> dict[str, object]:
         """Pickle without the world: kilobytes rather than megabytes."""
-        return {**self.__dict__, "problem": replace(self.problem, world=None)}
+        return {**self.__dict__, "problem": replace(self.problem, world=None), "world": None}
+
+    @cached_property
+    def problem(self) -> IKProblem:
+        """What was asked."""
+        asked = self.given
+        if isinstance(asked, IKProblem):
+            return asked
+        target = asked if isinstance(asked, Target) else pin.XYZQUATToSE3(asked[0] + asked[1])
+        return IKProblem.of(self.chain, target, self.world)
 
     @cached_property
     def curves(self) -> tuple[SelfMotionCurve, ...]:
@@ -146,6 +165,17 @@ def solve_ik_all(
         raise InvalidSetting("all solutions are found by a refiner: give the solver one, e.g. IKSolver(refiner='dls')")
     began = perf_counter()
     chain = chain if q0 is None else chain.at(q0)
+    if limit >= ROOTS and budget.seconds is None and budget.evaluations >= ENOUGH and watch is None:
+        settings = solver.descent.settings(budget.evaluations)
+        plain = all_of_plain(chain, target, q0, settings, apart, certify)
+        if plain is not None:
+            q = plain.q
+            if world is not None:
+                check_world(chain, world)
+                q = q[[not world.checker.collides(one) for one in q]]
+            return IKSolutions(
+                q, plain.complete, plain.evaluations, perf_counter() - began, chain, plain.given, world
+            )
     base = chain.reference if q0 is None else chain.configuration(q0)
     problem = IKProblem.of(chain, target, world).at(base)
     x0 = chain.x(base)
@@ -168,4 +198,6 @@ def solve_ik_all(
     found = found[np.argsort(np.linalg.norm(found - x0, axis=1), kind="stable")]
     q = chain.q(found, base)
     judged = np.array([problem.accepts(one) for one in q], dtype=bool)
-    return IKSolutions(q[judged], complete, spent, perf_counter() - began, problem, interrupted)
+    return IKSolutions(
+        q[judged], complete, spent, perf_counter() - began, chain, problem, world, interrupted
+    )
