@@ -16,11 +16,13 @@ from pin_metaik.arrays import Array
 from pin_metaik.ik.goals.pose import DEFAULT_TOLERANCE, Target
 from pin_metaik.ik.plain_pose import as_numbers
 from pin_metaik.ik.proof import Proof
+from pin_metaik.ik.refine.descent import Descent
 from pin_metaik.ik.result import Parts
 from pin_metaik.kinematics import Chain
 
 ROOM = 0.1  # of the distance between distinct solutions: tolerances that may move a solution so far
 FORM, ROOTS = 8, 64  # solutions at most by a closed form, and by the roots of six joints
+ENOUGH = 10_000  # evaluations: more than descents from all roots take
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -41,7 +43,7 @@ class PlainSet:
 
 
 def all_of_plain(
-    chain: Chain, target: object, q0: ArrayLike | None, settings: Array | None, apart: float, certify: bool
+    chain: Chain, target: object, q0: ArrayLike | None, descent: Descent, apart: float, certify: bool
 ) -> PlainSet | None:
     """All solutions of a whole pose of a chain's only frame; None if this takes a search, or is no such target.
 
@@ -49,11 +51,11 @@ def all_of_plain(
         chain: The chain, its held joints where q0 has them.
         target: Whatever somebody asks for.
         q0: (nq,) configuration that solutions are ordered by, and that has other joints.
-        settings: (4,) of a descent; None: there is no compiled one.
+        descent: What descends to a solution from a root of six joints, where it is compiled.
         apart: rad or m by which some coordinate of two solutions must differ.
         certify: Whether a search may prove that they are all, where counting does not.
     """
-    if settings is None or not chain.has_pose_solver or chain.n != 6:
+    if not chain.has_pose_solver or chain.n != 6:
         return None
     near = aligned = DEFAULT_TOLERANCE
     given: Target | None = None
@@ -72,23 +74,24 @@ def all_of_plain(
         return None
     try:
         q = np.array(chain.reference if q0 is None else q0, dtype=float)
-        found = (_by_form if len(chain.form) else _by_roots)(chain, matrix, near, aligned, settings, apart, certify, q)
+        found = (_by_form if len(chain.form) else _by_roots)(chain, matrix, near, aligned, descent, apart, certify, q)
     except (TypeError, ValueError, OverflowError):  # whatever it is, the long way takes it or says what is wrong
         return None
     if found is None:
         return None
     Q, complete, spent, parts = found
-    errors = np.empty((len(Q), 2))
-    chain.kernels.distances(np.repeat(matrix[None], len(Q), axis=0), chain.tip.fk_batch(Q), errors)
-    good = (errors[:, 0] <= near) & (errors[:, 1] <= aligned)
-    return PlainSet(Q if good.all() else Q[good], complete, spent, parts if given is None else given)
+    errors, targets = np.empty((len(Q), 2)), np.empty((len(Q), 4, 4))
+    targets[:] = matrix
+    chain.kernels.distances(targets, chain.tip.fk_batch(Q), errors)
+    good = [distance <= near and angle <= aligned for distance, angle in errors.tolist()]
+    return PlainSet(Q if all(good) else Q[good], complete, spent, parts if given is None else given)
 
 
 Found = tuple[NDArray[np.float64], Proof | None, int, Parts] | None
 
 
 def _by_form(
-    chain: Chain, pose: Array, near: float, aligned: float, settings: Array, apart: float, certify: bool, q: Array
+    chain: Chain, pose: Array, near: float, aligned: float, descent: Descent, apart: float, certify: bool, q: Array
 ) -> Found:
     """The branches of a closed form, where these are proved to be all."""
     proof = chain.form_proof
@@ -99,11 +102,11 @@ def _by_form(
 
 
 def _by_roots(
-    chain: Chain, pose: Array, near: float, aligned: float, settings: Array, apart: float, certify: bool, q: Array
+    chain: Chain, pose: Array, near: float, aligned: float, descent: Descent, apart: float, certify: bool, q: Array
 ) -> Found:
     """The roots of six joints, where there are as many as at any pose, and proved to be all if that is asked for."""
-    six = chain._six_joints
-    if six is None or (certify and six.degree != six.bound):
+    six, settings = chain._six_joints, descent.settings(ENOUGH)
+    if settings is None or six is None or (certify and six.degree != six.bound):
         return None
     every = chain._configurations(pose)
     if every is None or not every.all or (certify and not every.proved):

@@ -17,7 +17,7 @@ from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.collect import collect
 from pin_metaik.ik.goals.pose import Target
-from pin_metaik.ik.plain_all import ROOTS, all_of_plain
+from pin_metaik.ik.plain_all import ENOUGH, ROOTS, all_of_plain
 from pin_metaik.ik.problem import Asked, IKProblem, check_world
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.result import Parts
@@ -38,7 +38,6 @@ from pin_metaik.randomness import Rng
 from pin_metaik.watching import Stopped, Watch
 
 DEFAULT_BUDGET = Budget(evaluations=200_000)
-ENOUGH = 10_000  # evaluations: more than descents from all roots of six joints take
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,8 +165,7 @@ def solve_ik_all(
     began = perf_counter()
     chain = chain if q0 is None else chain.at(q0)
     if limit >= ROOTS and budget.seconds is None and budget.evaluations >= ENOUGH and watch is None:
-        settings = solver.descent.settings(budget.evaluations)
-        plain = all_of_plain(chain, target, q0, settings, apart, certify)
+        plain = all_of_plain(chain, target, q0, solver.descent, apart, certify)
         if plain is not None:
             q = plain.q
             if world is not None:
