@@ -37,7 +37,7 @@ from pin_metaik.plain import fields_of
 from pin_metaik.randomness import Rng
 from pin_metaik.watching import Stopped, Watch
 
-DEFAULT_BUDGET = Budget(evaluations=200_000)
+DEFAULT_BUDGET = Budget(evaluations=1_000_000)
 
 
 @dataclass(frozen=True, eq=False)
