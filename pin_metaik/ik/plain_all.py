@@ -1,7 +1,7 @@
 """All solutions of a whole pose for one frame, by a compiled call or two where no search is needed.
 
-``solve_ik_all`` begins with it. What it leaves open goes on to ``collect``, through targets, problems and search states,
-which cost ten times as much Python as the solutions of an arm with a closed form take.
+``solve_ik_all`` begins with it. What it leaves open goes on to ``collect``, through targets, problems and search
+states, which cost ten times as much Python as the solutions of an arm with a closed form take.
 """
 
 from __future__ import annotations
@@ -97,8 +97,8 @@ def _by_form(
     proof = chain.form_proof
     assert proof is not None
     out = np.empty((FORM, len(q)))
-    count, spent, *parts = proof.every(chain.block, pose, apart, q, out)
-    return None if count <= 0 else (out[:count], Proof.CLOSED_FORM, spent, (parts[0], parts[1]))
+    count, spent, position, turn = proof.every(chain.block, pose, apart, q, out)
+    return None if count <= 0 else (out[:count], Proof.CLOSED_FORM, spent, (position, turn))
 
 
 def _by_roots(
@@ -112,8 +112,10 @@ def _by_roots(
     if every is None or not every.all or (certify and not every.proved):
         return None
     out = np.empty((ROOTS, len(q)))
-    count, met, spent, *parts = every.settle(chain.bare, chain.limits, settings, near, aligned, pose, apart, q, out)
+    count, met, spent, position, turn = every.settle(
+        chain.bare, chain.limits, settings, near, aligned, pose, apart, q, out
+    )
     proved = every.proved and met
     if count <= 0 or (certify and not proved):
         return None
-    return out[:count], Proof.COUNT if proved else None, every.evaluations + spent, (parts[0], parts[1])
+    return out[:count], Proof.COUNT if proved else None, every.evaluations + spent, (position, turn)

@@ -17,6 +17,7 @@ from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.collect import collect
 from pin_metaik.ik.goals.pose import Target
+from pin_metaik.ik.labels import labels_of
 from pin_metaik.ik.plain_all import ENOUGH, ROOTS, all_of_plain
 from pin_metaik.ik.problem import Asked, IKProblem, check_world
 from pin_metaik.ik.proof import Proof
@@ -99,9 +100,19 @@ class IKSolutions:
         """(s, n) the chain's coordinates."""
         return self.problem.chain.x(self.q)
 
+    @cached_property
+    def labels(self) -> tuple[str, ...]:
+        """The branch that each solution is on, such as "shoulder + elbow - wrist +".
+
+        It stays the same from pose to pose along any motion that crosses no singularity: it has the signs of what
+        vanishes in them, of arms with a closed form three factors, of other chains with separate solutions the
+        determinant of the Jacobian, which several solutions share. Empty where solutions are not separate.
+        """
+        return labels_of(self.problem, self.x)
+
     def as_dict(self) -> dict[str, Any]:
         """Plain values, for JSON: lengths in m, angles in rad."""
-        return fields_of(self, "q", "complete", "interrupted", "evaluations", "seconds")
+        return fields_of(self, "q", "labels", "complete", "interrupted", "evaluations", "seconds")
 
     def __len__(self) -> int:
         return len(self.q)
@@ -171,9 +182,7 @@ def solve_ik_all(
             if world is not None:
                 check_world(chain, world)
                 q = q[[not world.checker.collides(one) for one in q]]
-            return IKSolutions(
-                q, plain.complete, plain.evaluations, perf_counter() - began, chain, plain.given, world
-            )
+            return IKSolutions(q, plain.complete, plain.evaluations, perf_counter() - began, chain, plain.given, world)
     base = chain.reference if q0 is None else chain.configuration(q0)
     problem = IKProblem.of(chain, target, world).at(base)
     x0 = chain.x(base)
@@ -196,6 +205,4 @@ def solve_ik_all(
     found = found[np.argsort(np.linalg.norm(found - x0, axis=1), kind="stable")]
     q = chain.q(found, base)
     judged = np.array([problem.accepts(one) for one in q], dtype=bool)
-    return IKSolutions(
-        q[judged], complete, spent, perf_counter() - began, chain, problem, world, interrupted
-    )
+    return IKSolutions(q[judged], complete, spent, perf_counter() - began, chain, problem, world, interrupted)

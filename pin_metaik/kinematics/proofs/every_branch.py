@@ -128,8 +128,7 @@ def solve_in(
 
 
 @jit(
-    "Tuple((i8, i8, UniTuple(f8, 3), UniTuple(f8, 4)))"
-    f"(f8[::1], f8[:,::1], f8[::1], {TARGET}, f8, f8[::1], f8[:,::1])"
+    f"Tuple((i8, i8, UniTuple(f8, 3), UniTuple(f8, 4)))(f8[::1], f8[:,::1], f8[::1], {TARGET}, f8, f8[::1], f8[:,::1])"
 )
 def every_branch(
     block: Floats, ideal: Floats, deviation: Floats, target: Floats, apart: float, q: Floats, out: Floats

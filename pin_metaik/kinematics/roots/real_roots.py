@@ -118,9 +118,7 @@ def descended(
     for k in range(m + starts.others[0]):
         if starts.inside[0] <= k < m or count == solutions.shape[0]:
             continue
-        steps, met, _ = descend_from(
-            arm, goals, None, bounds, starts.x[k], descent, descent.steps, np.inf, best, work
-        )
+        steps, met, _ = descend_from(arm, goals, None, bounds, starts.x[k], descent, descent.steps, np.inf, best, work)
         spent += steps
         if met and is_new(best, solutions, count, bounds.multi_turn, apart):
             copy(best, solutions[count])
@@ -158,9 +156,7 @@ def settle_in(
             if not add_start(roots[k], known, bounds, rotates, scratch.guess, scratch.start, starts):
                 return OPEN, False, 0
     goals, best = scratch.goal.reshape(1, GOAL), scratch.best
-    count, spent = descended(
-        arm, goals, bounds, starts, descent_of(settings)[0], apart, solutions, best, work
-    )
+    count, spent = descended(arm, goals, bounds, starts, descent_of(settings)[0], apart, solutions, best, work)
     met = starts.inside[0] > 0
     for k in range(starts.inside[0]):
         met = met and not is_new(starts.x[k], solutions, count, bounds.multi_turn, apart)

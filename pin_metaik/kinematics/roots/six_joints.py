@@ -80,9 +80,7 @@ class Configurations:
         from pin_metaik.kinematics.roots.real_roots import settle_roots
 
         rotates = limits.rotates.astype(np.int64)
-        return settle_roots(
-            block, rotates, settings, near, aligned, pose, self.x, self.nearly, apart, q, out
-        )
+        return settle_roots(block, rotates, settings, near, aligned, pose, self.x, self.nearly, apart, q, out)
 
 
 @dataclass(frozen=True, eq=False)
