@@ -7,10 +7,11 @@ states, which cost ten times as much Python as the solutions of an arm with a cl
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from pin_metaik.arrays import Array
 from pin_metaik.ik.goals.pose import DEFAULT_TOLERANCE, Target
@@ -87,7 +88,7 @@ def all_of_plain(
     return PlainSet(Q if all(good) else Q[good], complete, spent, parts if given is None else given)
 
 
-Found = tuple[NDArray[np.float64], Proof | None, int, Parts] | None
+Found: TypeAlias = tuple[Array, Proof | None, int, Parts] | None
 
 
 def _by_form(
