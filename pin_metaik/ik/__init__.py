@@ -3,7 +3,7 @@
 from pin_metaik.ik import goals
 from pin_metaik.ik.any import IKChoice, solve_ik_any
 from pin_metaik.ik.batch import IKBatch, solve_ik_batch
-from pin_metaik.ik.breaks import BreakReason, PathBreak
+from pin_metaik.ik.breaks import BreakReason, PathBreak, Reconfiguration
 from pin_metaik.ik.goals.pose import Target
 from pin_metaik.ik.gravity import gravity_torque
 from pin_metaik.ik.path import IKPath, solve_ik_path
@@ -31,6 +31,7 @@ __all__ = [
     "IKStatus",
     "PathBreak",
     "Proof",
+    "Reconfiguration",
     "Refinement",
     "Refiner",
     "SelfMotionCurve",

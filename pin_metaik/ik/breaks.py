@@ -26,6 +26,28 @@ class BreakReason(StrEnum):
     """The pose was not looked at, as a watch ended the path."""
 
 
+@dataclass(frozen=True)
+class Reconfiguration:
+    """A change of branch along a path.
+
+    Attributes:
+        index: Number of the pose that is met on another branch than the one before it.
+        before: The branch of the pose before, as ``IKSolutions.labels`` has it.
+        after: The branch from there on.
+    """
+
+    index: int
+    before: str
+    after: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values, for JSON."""
+        return fields_of(self, "index", "before", "after")
+
+    def __str__(self) -> str:
+        return f"to pose {self.index}: {self.before} becomes {self.after}"
+
+
 @dataclass(frozen=True, eq=False)
 class PathBreak:
     """A pose of a path that is not met, or not reached from the one before it.

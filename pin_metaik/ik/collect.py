@@ -26,10 +26,12 @@ from pin_metaik.watching import Progress, Stopped, Watch, tell
 VAIN = 60  # consecutive starts without a new solution ...
 VAIN_EACH = 15  # ... and as many more for each solution known, before a search for others ends
 BATCH = 128  # starts between two looks at what came of them
+IN_VAIN = 180_000  # evaluations without any solution after which a search for the first one ends
 MIDDLE = 5000  # evaluations for a solution in the middle of loose tolerances before all of them is aimed at
 ROOM = 0.1  # of the distance between distinct solutions: tolerances that may move a solution so far
 HALF = 0.25  # of it: half width of the boxes that cover all configurations
-COVERED = 4_096  # boxes that a cover may keep; more are a curve of solutions
+COVERED = 16_384  # boxes that a cover may keep; more are a curve of solutions
+AT_A_TIME = 50_000  # boxes between two looks at the clock and at what a watch says
 FINEST, FINER = 1e-7, 2_000  # rad or m, boxes: how closely a kept box without a solution is looked at
 EXACT = 1e-9  # m and rad
 SINGULAR = 1e-6  # least singular value of a Jacobian below which a solution counts as one of a curve
@@ -171,7 +173,7 @@ class Collection:
         problem, state = self.problem, self.state
         exclusion = Exclusion(problem, self._descent)
         total = state.left()
-        in_vain = MIDDLE if problem.loose else total - total // 10
+        in_vain = MIDDLE if problem.loose else min(total - total // 10, IN_VAIN)
         for index in count():
             starts = drawn(problem.chain, self._rng, index, BATCH)
             if index == 0:
@@ -227,11 +229,19 @@ class Collection:
         pose = problem.targets[0].pose.homogeneous
         if self.known == len(self._found):
             return
-        boxes = problem.chain._boxes(0, pose, 0.0, 0.0, least=half, split=True)
+        nominal = problem.chain.nominal_proof
+        begin = None if nominal is None else nominal.judge(pose, 0.0, 0.0).pieces
+        boxes = problem.chain._boxes(0, pose, 0.0, 0.0, least=half, split=True, begin=begin)
         if boxes is None:
             return
-        kept = boxes.look(self.state.left_for_boxes, COVERED)
-        self.state.add_boxes(boxes.looked)
+        kept, total = np.empty((0, 2 * n)), self.state.spent + self.state.left_for_boxes
+        while not boxes.done and len(kept) < COVERED and self.state.left_for_boxes and not self.state.late():
+            looked = boxes.looked
+            more = boxes.look(min(AT_A_TIME, self.state.left_for_boxes), COVERED - len(kept))
+            kept = np.concatenate([kept, more])
+            self.state.add_boxes(boxes.looked - looked)
+            if not boxes.done:
+                self._tell(total)
         if not boxes.done:
             return
         kept = kept[~self._near_solution(kept)]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from time import perf_counter
 from typing import Any
 
@@ -18,7 +19,8 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import array, checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.ik.breaks import BreakReason, PathBreak
+from pin_metaik.ik.breaks import BreakReason, PathBreak, Reconfiguration
+from pin_metaik.ik.labels import labels_of, signs_of
 from pin_metaik.ik.layers import Layers
 from pin_metaik.ik.problem import Asked, IKProblem, check_targets
 from pin_metaik.ik.solver import IKSolver
@@ -48,6 +50,8 @@ class IKPath:
         reasons: Why each pose that is not met is not, and each break: see ``PathBreak``.
         moves: For breaks, if ``reconfigure`` asked for it and one was found: a joint move (p, nq) from pose i - 1 to
             pose i, by i. Its straight parts keep inside the limits and are proved free in the world.
+        labels: The branch of each pose that is met, as ``IKSolutions.labels`` has it; empty texts elsewhere, and where
+            solutions are not separate.
     """
 
     q: NDArray[np.float64]
@@ -59,6 +63,14 @@ class IKPath:
     interrupted: bool = False
     reasons: tuple[PathBreak, ...] = ()
     moves: dict[int, NDArray[np.float64]] = field(default_factory=dict, repr=False)
+    labels: tuple[str, ...] = field(default=(), repr=False)
+
+    @property
+    def reconfigurations(self) -> tuple[Reconfiguration, ...]:
+        """Where the path changes its branch: at breaks, and through singularities between two poses without one."""
+        met = np.flatnonzero(self.success).tolist()
+        steps = [(a, b) for a, b in pairwise(met) if self.labels[a] != self.labels[b]]
+        return tuple(Reconfiguration(b, self.labels[a], self.labels[b]) for a, b in steps)
 
     @property
     def continuous(self) -> bool:
@@ -82,7 +94,9 @@ class IKPath:
     def as_dict(self) -> dict[str, Any]:
         """Plain values, for JSON: lengths in m, angles in rad."""
         names = ("q", "success", "continuous", "passable", "breaks", "longest_step", "interrupted", "seconds", "moves")
-        return {**fields_of(self, *names), "reasons": [reason.as_dict() for reason in self.reasons]}
+        changes = [change.as_dict() for change in self.reconfigurations]
+        reasons = [reason.as_dict() for reason in self.reasons]
+        return {**fields_of(self, *names), "reconfigurations": changes, "reasons": reasons}
 
     @property
     def x(self) -> NDArray[np.float64]:
@@ -166,7 +180,7 @@ def solve_ik_path(
     layers = Layers(problems, base, bound, solver, rng)
     x0 = None if q0 is None else chain.x(base)
     interrupted = False
-    ways = Ways(chain, layers.found, bound, x0, base, world, reconfigure)
+    ways = Ways(chain, layers.found, bound, x0, base, world, reconfigure, lambda i, X: signs_of(problems[i], X))
     way = Way({}, (), ())
     try:
         layers.fill(q0 is not None, watch)
@@ -186,7 +200,11 @@ def solve_ik_path(
     moves = _moves(chain, way, q, world, rng) if reconfigure else {}
     steps[[i - 1 for i in way.breaks]] = 0.0
     longest = float(np.abs(steps).max(initial=0.0))
-    return IKPath(q, success, way.breaks, longest, perf_counter() - began, chain, interrupted, reasons, moves)
+    labels = tuple(
+        "".join(labels_of(problem, one[None])) if met else ""
+        for problem, one, met in zip(problems, x, success, strict=True)
+    )
+    return IKPath(q, success, way.breaks, longest, perf_counter() - began, chain, interrupted, reasons, moves, labels)
 
 
 def _coordinates(

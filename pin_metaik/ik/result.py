@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pin_metaik.collision import CollisionWorld, Contact
 from pin_metaik.dexterity import rank
 from pin_metaik.ik.goals.goal import Outcome
+from pin_metaik.ik.labels import labels_of
 from pin_metaik.ik.problem import Asked, IKProblem
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.reasons import cannot_move, collisions, in_collision, out_of_reach
@@ -114,6 +115,11 @@ class IKResult:
     def rank(self) -> int:
         """Independent directions of the task that the chain can still move in at ``q``; fewer than asked: singular."""
         return rank(self.problem.linearize(self.x)[1])
+
+    @property
+    def label(self) -> str:
+        """The branch that ``q`` is on, as ``IKSolutions.labels`` has it; empty where solutions are not separate."""
+        return "".join(labels_of(self.problem, self.x[None]))
 
     @property
     def goals(self) -> tuple[Outcome, ...]:

@@ -9,14 +9,19 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.collect import collect
-from pin_metaik.ik.problem import Asked, IKProblem
+from pin_metaik.ik.goals.pose import Target
+from pin_metaik.ik.labels import labels_of
+from pin_metaik.ik.plain_all import ENOUGH, ROOTS, all_of_plain
+from pin_metaik.ik.problem import Asked, IKProblem, check_world
 from pin_metaik.ik.proof import Proof
+from pin_metaik.ik.result import Parts
 from pin_metaik.ik.self_motion.curve import SelfMotionCurve
 from pin_metaik.ik.self_motion.motions import (
     MOTION_BUDGET,
@@ -33,7 +38,7 @@ from pin_metaik.plain import fields_of
 from pin_metaik.randomness import Rng
 from pin_metaik.watching import Stopped, Watch
 
-DEFAULT_BUDGET = Budget(evaluations=200_000)
+DEFAULT_BUDGET = Budget(evaluations=1_000_000)
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +54,10 @@ class IKSolutions:
             pose exactly counts only where nothing near it does.
         evaluations: Forward kinematics computed.
         seconds: Time taken, s.
-        problem: What was asked; out of a pickle, without its world, which has all meshes in it.
+        chain: The chain, with its held joints where the start has them.
+        given: What was asked; a pose as position and quaternion, which is cheaper than a copy: see ``problem``.
+        world: The world they must not collide in, if one was given. A pickle leaves it behind, as it has all meshes in
+            it.
         interrupted: Whether a watch ended the search.
     """
 
@@ -57,12 +65,23 @@ class IKSolutions:
     complete: Proof | None
     evaluations: int
     seconds: float
-    problem: IKProblem = field(repr=False)
+    chain: Chain = field(repr=False)
+    given: IKProblem | Target | Parts = field(repr=False)
+    world: CollisionWorld | None = field(default=None, repr=False)
     interrupted: bool = False
 
     def __getstate__(self) -> dict[str, object]:
         """Pickle without the world: kilobytes rather than megabytes."""
-        return {**self.__dict__, "problem": replace(self.problem, world=None)}
+        return {**self.__dict__, "problem": replace(self.problem, world=None), "world": None}
+
+    @cached_property
+    def problem(self) -> IKProblem:
+        """What was asked."""
+        asked = self.given
+        if isinstance(asked, IKProblem):
+            return asked
+        target = asked if isinstance(asked, Target) else pin.XYZQUATToSE3(asked[0] + asked[1])
+        return IKProblem.of(self.chain, target, self.world)
 
     @cached_property
     def curves(self) -> tuple[SelfMotionCurve, ...]:
@@ -81,9 +100,19 @@ class IKSolutions:
         """(s, n) the chain's coordinates."""
         return self.problem.chain.x(self.q)
 
+    @cached_property
+    def labels(self) -> tuple[str, ...]:
+        """The branch that each solution is on, such as "shoulder + elbow - wrist +".
+
+        It stays the same from pose to pose along any motion that crosses no singularity: it has the signs of what
+        vanishes in them, of arms with a closed form three factors, of other chains with separate solutions the
+        determinant of the Jacobian, which several solutions share. Empty where solutions are not separate.
+        """
+        return labels_of(self.problem, self.x)
+
     def as_dict(self) -> dict[str, Any]:
         """Plain values, for JSON: lengths in m, angles in rad."""
-        return fields_of(self, "q", "complete", "interrupted", "evaluations", "seconds")
+        return fields_of(self, "q", "labels", "complete", "interrupted", "evaluations", "seconds")
 
     def __len__(self) -> int:
         return len(self.q)
@@ -146,6 +175,14 @@ def solve_ik_all(
         raise InvalidSetting("all solutions are found by a refiner: give the solver one, e.g. IKSolver(refiner='dls')")
     began = perf_counter()
     chain = chain if q0 is None else chain.at(q0)
+    if limit >= ROOTS and budget.seconds is None and budget.evaluations >= ENOUGH and watch is None:
+        plain = all_of_plain(chain, target, q0, solver.descent, apart, certify)
+        if plain is not None:
+            q = plain.q
+            if world is not None:
+                check_world(chain, world)
+                q = q[[not world.checker.collides(one) for one in q]]
+            return IKSolutions(q, plain.complete, plain.evaluations, perf_counter() - began, chain, plain.given, world)
     base = chain.reference if q0 is None else chain.configuration(q0)
     problem = IKProblem.of(chain, target, world).at(base)
     x0 = chain.x(base)
@@ -168,4 +205,4 @@ def solve_ik_all(
     found = found[np.argsort(np.linalg.norm(found - x0, axis=1), kind="stable")]
     q = chain.q(found, base)
     judged = np.array([problem.accepts(one) for one in q], dtype=bool)
-    return IKSolutions(q[judged], complete, spent, perf_counter() - began, problem, interrupted)
+    return IKSolutions(q[judged], complete, spent, perf_counter() - began, chain, problem, world, interrupted)

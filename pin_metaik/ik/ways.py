@@ -1,4 +1,4 @@
-"""The best way through layers of solutions: the fewest breaks first, then the shortest.
+"""The best way through layers of solutions: the fewest breaks, then the fewest changes of branch, then the shortest.
 
 It is found by dynamic programming. In a world, a step between two solutions counts only if it is proved free; that is
 looked at lazily, for the steps of the way that is the best so far, until all of its steps are known.
@@ -6,15 +6,18 @@ looked at lazily, for the steps of the way that is the best so far, until all of
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.collision import CollisionWorld
+from pin_metaik.ik.labels import Signs
 from pin_metaik.kinematics import Chain
 
-BREAK = 1e5  # what a break costs, in rad or m of way: more than any path has
+BREAK = 1e6  # what a break costs, in rad or m of way: more than any path has
+CHANGE = 1e3  # and what another branch of solutions does, which is reached through a singularity
 ROUNDS = 400  # ways that are looked at; the steps that are left then count as breaks
 
 Floats = NDArray[np.float64]
@@ -48,6 +51,7 @@ class Ways:
         base: (nq,) where the joints that the chain does not move are.
         world: What must not collide between poses; None: nothing is looked at.
         moves: Whether a break is better where a straight move leads across it.
+        signs: The branches (s, f) of the solutions (s, n) of a layer: see ``labels.signs_of``.
     """
 
     chain: Chain
@@ -57,6 +61,7 @@ class Ways:
     base: Floats
     world: CollisionWorld | None
     moves: bool
+    signs: Callable[[int, Floats], Signs]
     _steps: dict[int, Singles] = field(init=False, default_factory=dict)  # costs (a, b) of the steps to each layer
     _known: set[tuple[int, int, int]] = field(init=False, default_factory=set)  # steps that were looked at
     _totals: dict[int, Floats] = field(init=False, default_factory=dict)  # costs (b,) up to each layer
@@ -86,7 +91,7 @@ class Ways:
                 )
                 continue
             if here not in self._steps:
-                self._steps[here] = self._costs(self.layers[places[k - 1]], self.layers[here])
+                self._steps[here] = self._costs(places[k - 1], here)
             total = self._totals[places[k - 1]][:, None] + self._steps[here]
             self._before[here] = total.argmin(axis=0)
             self._totals[here] = total.min(axis=0)
@@ -125,10 +130,13 @@ class Ways:
                 barred.append(here)
         return Way(rows, tuple(breaks), tuple(barred))
 
-    def _costs(self, before: Floats, here: Floats) -> Singles:
-        """Costs (a, b) of the steps between two layers (a, n) and (b, n), with what is too long for a step."""
-        step = self.chain.limits.way(before[:, None], here[None])  # (a, b, n)
-        costs = np.linalg.norm(step, axis=2) + BREAK * (np.abs(step) > self.bound).any(axis=2)
+    def _costs(self, before: int, here: int) -> Singles:
+        """Costs (a, b) of the steps between two layers, with what is too long for a step, or to another branch."""
+        a, b = self.layers[before], self.layers[here]
+        step = self.chain.limits.way(a[:, None], b[None])  # (a, b, n)
+        changes = (self.signs(before, a)[:, None] != self.signs(here, b)[None]).any(axis=2)
+        costs = np.linalg.norm(step, axis=2) + CHANGE * changes
+        costs += BREAK * (np.abs(step) > self.bound).any(axis=2)
         kept: Singles = costs.astype(np.float32)  # they are, of all layers
         return kept
 

@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
-from pin_metaik.kinematics.kernel import closed_form, forward, goals, multistart, pose_solver, warm_starts
+from pin_metaik.kinematics.kernel import (
+    closed_form,
+    forward,
+    goals,
+    multistart,
+    pose_solver,
+    singularities,
+    warm_starts,
+)
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -27,6 +35,7 @@ class Kernels:
     settle_pose = staticmethod(pose_solver.settle_pose)
     is_out_of_reach = staticmethod(pose_solver.is_out_of_reach)
     distances = staticmethod(pose_solver.distances)
+    factors = staticmethod(singularities.factors)
     POSITION = pose_solver.POSITION
 
     @staticmethod

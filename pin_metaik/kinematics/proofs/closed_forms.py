@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +18,7 @@ from pin_metaik.kinematics.paths import ChainArrays
 from pin_metaik.kinematics.proofs.deviation import deviation, ideal
 
 Floats = NDArray[np.float64]
+Place: TypeAlias = tuple[tuple[float, float, float], tuple[float, float, float, float]]
 BRANCHES, TURN = 8, 2.0 * math.pi
 POSSIBLE, SHOULDER, WRIST, ELBOW, LIMIT = range(5)  # as the compiled loop numbers what is wrong with a branch
 
@@ -148,6 +152,16 @@ class ClosedFormProof:
         judge_pose(*how, pose, near, aligned, angles, radii, faults)
         columns = self.wiring[:, 0]
         return Branches(angles[:, columns.argsort()], radii[:, columns.argsort()], faults, columns, self.limits)
+
+    @cached_property
+    def _every(self) -> Callable[..., tuple[int, int, *Place]]:
+        from pin_metaik.kinematics.proofs.every_branch import every_branch
+
+        return every_branch.compiled()  # type: ignore[attr-defined,no-any-return]  # ``jit`` puts it there
+
+    def every(self, block: Floats, pose: Floats, apart: float, q: Floats, out: Floats) -> tuple[int, int, *Place]:
+        """All configurations for a pose, in one compiled call; see ``every_branch``, which has the arguments."""
+        return self._every(block, self.form, self.deviation, pose, apart, q, out)
 
 
 def _copy(angle: float, lower: float, upper: float) -> tuple[float, float]:

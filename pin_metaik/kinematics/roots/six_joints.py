@@ -14,6 +14,7 @@ from pin_metaik.arrays import Array
 from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE, SHIFT
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.paths import ChainArrays
+from pin_metaik.kinematics.proofs.closed_forms import Place
 
 Complexes: TypeAlias = NDArray[np.complex128]
 Ints: TypeAlias = NDArray[np.int64]
@@ -62,6 +63,24 @@ class Configurations:
         kept = ((limits.lower <= real) & (limits.upper >= real)).all(axis=1)
         nearly = np.concatenate([self.x[(off >= REAL) & (off < NEARLY)].real, self.nearly.real])
         return real[kept], np.concatenate([real[~kept], copies_inside(nearly, limits, x0)])
+
+    def settle(
+        self,
+        block: Array,
+        limits: Limits,
+        settings: Array,
+        near: float,
+        aligned: float,
+        pose: Array,
+        apart: float,
+        q: Array,
+        out: Array,
+    ) -> tuple[int, bool, int, *Place]:
+        """Descend from all that is ``inside``, in one compiled call; see ``settle_roots``, which has the arguments."""
+        from pin_metaik.kinematics.roots.real_roots import settle_roots
+
+        rotates = limits.rotates.astype(np.int64)
+        return settle_roots(block, rotates, settings, near, aligned, pose, self.x, self.nearly, apart, q, out)
 
 
 @dataclass(frozen=True, eq=False)
