@@ -98,9 +98,7 @@ def installed(folder: Path) -> float:
 
 def may_run(python: Path) -> bool:
     try:
-        return (
-            subprocess.run([python, "-c", ""], user=NOBODY, group=NOBODY, extra_groups=[], check=False).returncode == 0
-        )
+        done = subprocess.run([python, "-c", ""], user=NOBODY, group=NOBODY, extra_groups=[], check=False)
     except PermissionError:
         return False
     return done.returncode == 0
