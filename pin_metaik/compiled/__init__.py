@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.arrays import Array
-from pin_metaik.compiled.loop import LOOSE, OPTIONS, Loop, kept
+from pin_metaik.compiled.loop import LOOSE, OPTIONS, Loop
+from pin_metaik.compiled.on_disk import MachineCode
+from pin_metaik.compiled.parts import Part
 
 Floats = Array
 Singles = NDArray[np.float32]
@@ -52,19 +54,25 @@ PART: dict[str, Any] = {**OPTIONS, "_nrt": False}
 
 def inline(function: F) -> F:
     """A part of a loop: compiled into each loop that calls it, with the constants of that loop."""
-    return cast(F, kept(fastmath=LOOSE, forceinline=True, **PART)(function))
+    return cast(F, _part(function, fastmath=LOOSE, forceinline=True, **PART))
 
 
 def shared(function: F) -> F:
-    """A part that several loops call: compiled once, for all of them."""
-    return cast(F, kept(fastmath=LOOSE, **PART)(function))
+    """A part that a loop calls from several places: it is in the loop once."""
+    return cast(F, _part(function, fastmath=LOOSE, **PART))
 
 
 def exact(function: F) -> F:
     """A part of a loop whose roundings must come in the order written."""
-    return cast(F, kept(fastmath={"contract"}, forceinline=True, **PART)(function))
+    return cast(F, _part(function, fastmath={"contract"}, forceinline=True, **PART))
 
 
 def allocating(function: F) -> F:
     """A part that makes arrays for a loop before it begins, or returns views of them."""
-    return cast(F, kept(**OPTIONS)(function))
+    return cast(F, _part(function, **OPTIONS))
+
+
+def _part(function: Callable[..., Any], **options: Any) -> Part:
+    part = Part(function, **options)
+    part._cache = MachineCode(function)
+    return part

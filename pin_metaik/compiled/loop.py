@@ -28,17 +28,6 @@ NOTICE = (
 )
 
 
-def kept(**options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Numba's dispatcher of a function; the machine code is cached on disk."""
-
-    def dispatcher(function: Callable[..., Any]) -> Any:
-        loop = numba.njit(**options)(function)
-        loop._cache = MachineCode(function)
-        return loop
-
-    return dispatcher
-
-
 class Loop:
     """A function and the versions that it is compiled into.
 
@@ -73,7 +62,8 @@ class Loop:
     def compiled(self, without: bool = False) -> Callable[..., Any]:
         """Numba's function, compiled now or read from the cache."""
         with Pressed(held=True) as pressed:  # broken off, numba would compile nothing more in this process
-            loop = kept(fastmath=LOOSE, **OPTIONS)(self.function)
+            loop = numba.njit(fastmath=LOOSE, no_cfunc_wrapper=True, **OPTIONS)(self.function)
+            loop._cache = self.machine_code
             signature = self.signatures[without]
             with nullcontext() if loop._cache.has(signature) else loop._cache.turn():
                 loop.compile(signature)

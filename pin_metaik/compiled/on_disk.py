@@ -22,6 +22,7 @@ from numba.core import caching, config
 from numba.core.registry import cpu_target
 
 from pin_metaik.cache_folder import cache_folder
+from pin_metaik.compiled import parts
 from pin_metaik.compiled.baseline import Baseline, baseline
 from pin_metaik.compiled.sources import PACKAGE, digest
 from pin_metaik.locks import locked
@@ -149,6 +150,9 @@ class _Implementation(caching.CompileResultCacheImpl):
         self._locator = _Locator(function, folder)
         name = f"{Path(function.__code__.co_filename).stem}.{function.__qualname__}"
         self._filename_base = self.get_filename_base(name, getattr(sys, "abiflags", ""))
+
+    def rebuild(self, target_context: Any, payload: tuple[Any, ...]) -> Any:
+        return parts.read(target_context, payload) or super().rebuild(target_context, payload)
 
 
 class _Locator(caching._CacheLocator):
