@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
-
-if TYPE_CHECKING:
-    from pin_metaik.gui.tab import Tab
+from typing import Any, Protocol
 
 
 class Page(Protocol):
@@ -22,7 +19,8 @@ class Page(Protocol):
         ...
 
 
-Open = Callable[["Tab", Mapping[str, Any]], Page]
+Open = Callable[[Any, Mapping[str, Any]], Page]
+"""Of a ``Tab`` and what the page keeps."""
 
 
 @dataclass(frozen=True)
