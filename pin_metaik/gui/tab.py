@@ -47,6 +47,7 @@ class Tab:
         self.lock = threading.RLock()
         self.closed = False
         self.page: Page | None = None
+        self._opened = 0  # pages so far: what is told of work for one that is gone goes nowhere
         self.name = next(iter(pages))
         self._kept: dict[str, dict[str, Any]] = {}
         self._runs: list[Run] = []
@@ -68,6 +69,7 @@ class Tab:
             raise UnknownName("page", name, self._pages)
         with self.lock, self.client.atomic():
             self._leave()
+            self._opened += 1
             self.name, entry = name, self._pages[name]
             self._chosen.value = entry.title
             self._panel = self.client.gui.add_folder(None, order=1.0)
@@ -126,7 +128,7 @@ class Tab:
         held: bool = False,
         pause: float = 0.0,
     ) -> Run:
-        """Hand over long work; what is told of it comes under the tab's lock, and not once the tab is closed.
+        """Hand over long work of the page; what is told of it comes under the tab's lock, while the page is open.
 
         Raises:
             InvalidSetting: The tab has too many runs going on.
@@ -135,15 +137,17 @@ class Tab:
         if len(self._runs) >= MOST_RUNS:
             raise InvalidSetting(f"{MOST_RUNS} runs are going on in this tab already: stop one")
 
+        opened = self._opened
+
         def telling(message: Told) -> None:
             with self.lock:
-                if not self.closed:
+                if not self.closed and opened == self._opened:
                     with told(self.client):
                         tell(message)
 
         def ending(run: Run) -> None:
             with self.lock:
-                if not self.closed:
+                if not self.closed and opened == self._opened:
                     with told(self.client):
                         if run.error is not None:
                             raise run.error

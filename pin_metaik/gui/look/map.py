@@ -132,7 +132,7 @@ def look_down(tab: Tab, world: Scene, maps: int = 1) -> None:
     camera = tab.client.camera
     camera.fov = np.radians(40.0)
     camera.up_direction = (0.0, 1.0, 0.0)
-    camera.position = tuple(centre + [0.0, -1e-3 * height, ABOVE * max(width, height)])
+    camera.position = (centre[0], centre[1] - 1e-3 * height, ABOVE * max(width, height))
     camera.look_at = tuple(centre)
 
 

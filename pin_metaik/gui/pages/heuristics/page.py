@@ -117,7 +117,9 @@ class HeuristicsPage:
             "Iterations", state.iterations, min=1, step=1, hint="Of the first population."
         )
         self._seed = gui.add_number("Seed", state.seed, min=0, step=1)
-        self._pause = gui.add_number("Pause, s", state.pause, min=0.0, max=10.0, step=0.01, hint="Between generations.")
+        self._pause = gui.add_number(
+            "Pause, s", state.pause, min=0.0, max=10.0, step=0.01, hint="After each generation."
+        )
         run = gui.add_button("Run")
         run.on_click(tab.doing(lambda: self._begin(("algorithm",), held=False)))
         both = gui.add_button("Run both side by side", hint="At equal evaluations.")

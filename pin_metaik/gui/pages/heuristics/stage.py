@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Protocol
 
 import numpy as np
@@ -44,10 +45,8 @@ class MapStage:
     def __init__(self, tab: Tab, number: int, scene: Scene, radius: float = 0.0) -> None:
         self._map = MapDrawing(tab, f"{ROOT}/stage{number}", scene, number * beside(scene))
         self._problem = PathProblem.of(scene, radius)
-        try:
+        with suppress(NoPath):
             self._map.path("shortest", self._problem.optimum.points, EXACT, 2.0)
-        except NoPath:
-            pass  # then there is none to draw
 
     def show(self, X: NDArray[np.float64], best: NDArray[np.float64] | None) -> None:
         """See ``Stage``."""
