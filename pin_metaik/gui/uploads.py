@@ -6,6 +6,7 @@ import io
 import re
 import zipfile
 import zlib
+from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 
 from pin_metaik.errors import InvalidSetting
@@ -42,6 +43,21 @@ def received(name: str, content: bytes, folder: Path, suffixes: tuple[str, ...])
     path = folder / plain
     path.write_bytes(content)
     return path
+
+
+def only_inside(files: Iterable[str], name: str) -> None:
+    """Make sure that what was uploaded names no file outside of itself.
+
+    Raises:
+        InvalidSetting: It does; packages of installed robots may be named.
+    """
+    for file in files:
+        inner = file.removeprefix("package://")
+        if inner.startswith(("/", "~", "\\")) or ":" in inner or ".." in PurePosixPath(inner.replace("\\", "/")).parts:
+            raise InvalidSetting(
+                f"{name} names the file {file!r}, outside of what was uploaded: send a .zip with all of its files, "
+                "named relative to it"
+            )
 
 
 def plain_name(name: str) -> str:

@@ -51,7 +51,8 @@ class CurvePlot:
 
     def __init__(self, gui: Any, x: str, y: str, *, log: bool = False, height: int = 230) -> None:
         self._x = x
-        axes = ({"label": x, "stroke": "#888", "labelSize": 20}, {"label": y, "stroke": "#888", "labelSize": 20})
+        looks = {"stroke": "#888", "labelSize": 20}
+        axes = ({**looks, "label": x}, {**looks, "label": y, "grid": {"show": not log}, "ticks": {"show": not log}})
         scales = {"x": {"time": False}, "y": {"distr": 3} if log else {}}
         self._log = log
         self._plot = gui.add_uplot(

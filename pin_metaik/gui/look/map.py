@@ -16,7 +16,7 @@ Colour = tuple[int, int, int]
 STONE, EDGE, WALL = (165, 150, 135), (90, 75, 60), (60, 60, 70)
 START, GOAL = (40, 150, 70), (200, 60, 50)
 HEIGHT = 0.02  # of obstacles, in widths of the map
-ABOVE = 1.45  # widths, from which the camera looks down
+ABOVE = 1.5  # heights of what is seen, from which the camera looks down
 
 
 class MapDrawing:
@@ -132,7 +132,8 @@ def look_down(tab: Tab, world: Scene, maps: int = 1) -> None:
     camera = tab.client.camera
     camera.fov = np.radians(40.0)
     camera.up_direction = (0.0, 1.0, 0.0)
-    camera.position = (centre[0], centre[1] - 1e-3 * height, ABOVE * max(width, height))
+    away = ABOVE * max(width / camera.aspect, height)
+    camera.position = (centre[0], centre[1] - 1e-3 * height, away)
     camera.look_at = tuple(centre)
 
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 from pin_metaik.gui.page import Entry
 from pin_metaik.gui.pages.arms import ArmsPage
 from pin_metaik.gui.pages.heuristics import HeuristicsPage
+from pin_metaik.gui.pages.paths import PathsPage
 
 PAGES: dict[str, Entry] = {
     "arms": Entry("Arms", ArmsPage),
     "metaheuristics": Entry("Metaheuristics at work", HeuristicsPage),
+    "paths": Entry("Path planning", PathsPage),
 }

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from pin_metaik.collision import CollisionWorld, Obstacle, load_scene
-from pin_metaik.errors import InvalidGeometry, InvalidModel
 from pin_metaik.gui.pages.arms.state import ArmsState
+from pin_metaik.gui.uploads import only_inside
 from pin_metaik.kinematics import Chain
 from pin_metaik.robots import Robot, load_robot
 from pin_metaik.robots.library import catalogue, example_robots
@@ -79,21 +79,6 @@ def names() -> tuple[str, ...]:
     return (*catalogue(), *example_robots())
 
 
-def only_inside(files: Iterable[str], name: str) -> None:
-    """Make sure that an uploaded robot or scene names no file outside of what was uploaded.
-
-    Raises:
-        InvalidModel: It does; packages of installed robots may be named.
-    """
-    for file in files:
-        inner = file.removeprefix("package://")
-        if inner.startswith(("/", "~", "\\")) or ":" in inner or ".." in Path(inner.replace("\\", "/")).parts:
-            raise InvalidModel(
-                f"{name} names the file {file!r}, outside of what was uploaded: send a .zip with all of its files, "
-                "named relative to it"
-            )
-
-
 @dataclass
 class Scenery:
     """The obstacles of the page as the entries of a scene's file.
@@ -116,10 +101,7 @@ class Scenery:
             return ()
         for entry in self.entries:
             if "file" in entry:
-                try:
-                    only_inside([str(entry["file"])], str(entry.get("name", "an obstacle")))
-                except InvalidModel as error:
-                    raise InvalidGeometry(str(error)) from None
+                only_inside([str(entry["file"])], str(entry.get("name", "an obstacle")))
         path = self.folder / "obstacles.json"
         path.write_text(self.to_json(), encoding="utf-8")
         return load_scene(path)

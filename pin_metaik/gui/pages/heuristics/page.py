@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any, get_args
 
-from pin_metaik.gui.forms import SettingsForm
 from pin_metaik.gui.kept import plain_of, state_of
 from pin_metaik.gui.look.curves import CurvePlot
+from pin_metaik.gui.pages.algorithms import AlgorithmForm, made, population
 from pin_metaik.gui.pages.heuristics import state as states
 from pin_metaik.gui.pages.heuristics.record import Record
 from pin_metaik.gui.pages.heuristics.stage import Stage, set_up
@@ -18,7 +18,7 @@ from pin_metaik.gui.pages.heuristics.state import PAPER, HeuristicsState, Proble
 from pin_metaik.gui.pages.heuristics.tasks import ArmTask, PathTask
 from pin_metaik.gui.tab import Tab
 from pin_metaik.mobile import FITNESSES, Scene, load_scene, random_scene, scene_names
-from pin_metaik.optimize import ALGORITHMS, Metaheuristic
+from pin_metaik.optimize import Metaheuristic
 from pin_metaik.processes import Order, Run, Told
 from pin_metaik.robots.library import catalogue
 
@@ -49,7 +49,7 @@ class HeuristicsPage:
         with gui.add_folder("Problem"):
             self._furnish_problem(gui)
         with gui.add_folder("Algorithm"):
-            self._furnish_algorithms(gui)
+            self._furnish_algorithms()
         with gui.add_folder("Run"):
             self._furnish_run(gui)
         with gui.add_folder("Results"):
@@ -99,17 +99,12 @@ class HeuristicsPage:
             if name in self._inputs:
                 self._inputs[name].on_update(tab.doing(self._preview))
 
-    def _furnish_algorithms(self, gui: Any) -> None:
-        self._forms: dict[str, SettingsForm] = {}
-        self._names: dict[str, Any] = {}
-        for role, label in (("algorithm", "Algorithm"), ("against", "Beside it")):
-            name = getattr(self._state, role)
-            handle = gui.add_dropdown(label, tuple(ALGORITHMS), initial_value=name)
-            handle.on_update(self._tab.doing(lambda: self._again()))
-            self._names[role] = handle
-            settings = self._state.settings if role == "algorithm" else self._state.against_settings
-            with gui.add_folder(f"Settings of {name}", expand_by_default=role == "algorithm"):
-                self._forms[role] = SettingsForm(self._tab, states.made(name, settings))
+    def _furnish_algorithms(self) -> None:
+        tab, state = self._tab, self._state
+        self._forms = {
+            "algorithm": AlgorithmForm(tab, "Algorithm", state.algorithm, state.settings),
+            "against": AlgorithmForm(tab, "Beside it", state.against, state.against_settings, expanded=False),
+        }
 
     def _furnish_run(self, gui: Any) -> None:
         tab, state = self._tab, self._state
@@ -128,14 +123,8 @@ class HeuristicsPage:
         self._orders.on_click(tab.doing(lambda: self._order(self._orders.value)))
 
     def _again(self) -> None:
-        """Open the page anew: another problem or algorithm has other inputs."""
-        state, problem = self._read(), self._problem.value
-        fresh = {}
-        for role in ("algorithm", "against"):
-            if self._names[role].value != getattr(self._state, role):
-                fresh[role] = self._names[role].value
-                fresh["settings" if role == "algorithm" else "against_settings"] = {}
-        self._tab.show_with(self._tab.name, plain_of(replace(state, problem=problem, **fresh)))
+        """Open the page anew: another problem has other inputs."""
+        self._tab.show_with(self._tab.name, plain_of(replace(self._read(), problem=self._problem.value)))
 
     def _read(self) -> HeuristicsState:
         """The state with what was typed."""
@@ -143,18 +132,14 @@ class HeuristicsPage:
         return replace(
             self._state,
             **typed,
-            settings=self._changed("algorithm"),
-            against_settings=self._changed("against"),
+            algorithm=self._forms["algorithm"].name,
+            settings=self._forms["algorithm"].changed,
+            against=self._forms["against"].name,
+            against_settings=self._forms["against"].changed,
             iterations=int(self._iterations.value),
             seed=int(self._seed.value),
             pause=float(self._pause.value),
         )
-
-    def _changed(self, role: str) -> dict[str, Any]:
-        """The settings of an algorithm that are not its usual ones."""
-        settings = self._forms[role].settings
-        usual = asdict(type(settings)())
-        return {name: value for name, value in asdict(settings).items() if value != usual[name]}
 
     def _scene(self, state: HeuristicsState) -> Scene:
         if state.scene != states.RANDOM:
@@ -173,7 +158,7 @@ class HeuristicsPage:
     def _preview(self) -> None:
         """Draw the problem before anything is run."""
         state = self._read()
-        self._set_up([self._task(state, self._forms["algorithm"].settings, 1)])
+        self._set_up([self._task(state, self._forms["algorithm"].algorithm, 1)])
 
     def _set_up(self, tasks: list[PathTask | ArmTask]) -> None:
         for stage in self._stages:
@@ -186,8 +171,8 @@ class HeuristicsPage:
         state = self._read()
         for run in self._runs:
             run.stop()
-        algorithms = [self._forms[role].settings for role in roles]
-        evaluations = state.iterations * states.population(algorithms[0])
+        algorithms = [self._forms[role].algorithm for role in roles]
+        evaluations = state.iterations * population(algorithms[0])
         tasks = [self._task(state, algorithm, evaluations) for algorithm in algorithms]
         self._set_up(tasks)
         self._runs = []
@@ -195,7 +180,7 @@ class HeuristicsPage:
         self._replay.disabled = True
         for role, task, stage in zip(roles, tasks, self._stages, strict=True):
             self._count += 1
-            record = Record(f"{self._names[role].value} {self._count}", shown)
+            record = Record(f"{self._forms[role].name} {self._count}", shown)
             self._records = [*self._records, record][-MOST_RECORDS:]
             drawn = [0.0]
             run = self._tab.begin(
@@ -276,7 +261,7 @@ class HeuristicsPage:
         path = self._tab.received(handle, ".json")
         record = Record.from_text(path.read_bytes(), path.name)
         state = state_of(HeuristicsState, record.task, path.name)
-        task = self._task(state, states.made(state.algorithm, state.settings), 1)
+        task = self._task(state, made(state.algorithm, state.settings), 1)
         dimension = {X.shape[1] for X in record.populations}
         self._set_up([task])
         self._records = [*self._records, record][-MOST_RECORDS:]

@@ -9,14 +9,10 @@ from typing import Any, Literal
 from pin_metaik.arguments import checked
 from pin_metaik.compare.papers.path_planning_setup import ITERATIONS, SETTINGS
 from pin_metaik.compare.papers.puma_offset import EXAMPLES, METHODS
-from pin_metaik.errors import InvalidSetting
-from pin_metaik.lookup import lookup
-from pin_metaik.optimize import ALGORITHMS, Metaheuristic
+from pin_metaik.gui.pages.algorithms import made
 from pin_metaik.optimize.settings import few, one_of, whole, within
 
 Problem = Literal["path", "arm"]
-POPULATION = ("agents", "frogs")  # what algorithms call the size of theirs
-OWN_SIZE = 50  # for the number of evaluations, where an algorithm chooses the size itself
 RANDOM = "random"
 WIDTH = 10.0  # of the paper's workspace
 PENALTY_17 = 1000.0 / WIDTH  # its penalty in Fig. 17, in widths
@@ -78,26 +74,6 @@ class HeuristicsState:
         within("pause", self.pause, 0, 10)
         made(self.algorithm, self.settings)
         made(self.against, self.against_settings)
-
-
-def made(name: str, settings: Mapping[str, Any]) -> Metaheuristic:
-    """A metaheuristic with some settings.
-
-    Raises:
-        UnknownName: None is so called.
-        InvalidSetting: It has no such settings.
-    """
-    kind = lookup("metaheuristic", name, ALGORITHMS)
-    try:
-        return kind(**settings)
-    except TypeError as error:
-        raise InvalidSetting(f"{name} has not all of the settings {', '.join(settings)}: {error}") from None
-
-
-def population(algorithm: Metaheuristic) -> int:
-    """How many search at a time."""
-    sizes = (getattr(algorithm, name, None) for name in POPULATION)
-    return next((size for size in sizes if size), OWN_SIZE)
 
 
 def figure_17() -> HeuristicsState:
