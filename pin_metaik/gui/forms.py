@@ -5,10 +5,9 @@ from __future__ import annotations
 import inspect
 import math
 import re
-import types
 from collections.abc import Callable, Mapping
 from dataclasses import fields
-from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
+from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.gui.tab import Tab
@@ -78,17 +77,19 @@ def _input(gui: Any, name: str, hint: Any, value: Any, said: str | None) -> tupl
     """An input for a setting, and what reads its value."""
     if get_origin(hint) is Literal:
         return gui.add_dropdown(name, get_args(hint), initial_value=value, hint=said), str
-    if get_origin(hint) in (Union, types.UnionType):
-        kind = next(one for one in get_args(hint) if one is not type(None))
-        shown = UNSET if value is None else str(value)
-        return gui.add_text(name, shown, hint=f"{said or ''} Empty: its own."), lambda text: _optional(name, text, kind)
     if hint is bool:
         return gui.add_checkbox(name, value, hint=said), bool
     if hint is int:
         return gui.add_number(name, value, step=1, hint=said), int
     if hint is float:
         return gui.add_number(name, float(value), step=_step(value), hint=said), float
-    raise TypeError(f"no input for {name}: {hint}")  # a new algorithm's field of another kind
+    inside = get_args(hint)
+    if get_origin(hint) is tuple and inside in ((float, float), (float,) * 3, (int,) * 3):
+        add = gui.add_vector2 if len(inside) == 2 else gui.add_vector3
+        handle = add(name, tuple(float(each) for each in value), step=1.0 if inside[0] is int else 0.001, hint=said)
+        return handle, lambda typed: tuple(inside[0](each) for each in typed)
+    shown = UNSET if value is None else text_of(value)
+    return gui.add_text(name, shown, hint=said), lambda text: value_of(name, text)
 
 
 def _step(value: float) -> float:
@@ -96,11 +97,32 @@ def _step(value: float) -> float:
     return 10.0 ** (math.floor(math.log10(abs(value))) - 2) if value else 0.001
 
 
-def _optional(name: str, text: str, kind: type) -> Any:
-    """A number, or None for an empty text."""
-    if not text.strip():
+def text_of(value: Any) -> str:
+    """A number, a word, a range or a list of these, as it is typed: ``0.1``, ``best``, ``0.1..0.2``, ``0, 1..2``."""
+    if isinstance(value, tuple):
+        ranged = len(value) == 2 and not any(isinstance(each, tuple) for each in value)
+        return (".." if ranged else ", ").join(map(text_of, value))
+    return value if isinstance(value, str) else repr(value)
+
+
+def value_of(name: str, text: str) -> Any:
+    """What was typed; None for nothing.
+
+    Raises:
+        InvalidSetting: It is neither numbers, ranges nor a word.
+    """
+    text = text.strip()
+    if not text:
         return None
+    if "," in text:
+        return tuple(value_of(name, part) for part in text.split(","))
+    if ".." in text:
+        return tuple(_number(name, part) for part in text.split("..", 1))
+    return text if text.isalpha() and text not in ("nan", "inf") else _number(name, text)
+
+
+def _number(name: str, text: str) -> int | float:
     try:
-        return kind(text)
+        return int(text) if text.strip().lstrip("+-").isdigit() else float(text)
     except ValueError:
-        raise InvalidSetting(f"{name}: a number or nothing, got {text!r}") from None
+        raise InvalidSetting(f"{name}: a number, a range such as 0.1..0.2, or nothing; got {text!r}") from None

@@ -1,4 +1,4 @@
-"""Path planning: obstacles that are drawn, the shortest path, a metaheuristic's beside it, and a robot that drives it."""
+"""Path planning: obstacles drawn with the mouse, the shortest path, a metaheuristic beside it, and a motion along it."""
 
 from pin_metaik.gui.pages.paths.page import PathsPage
 
