@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from pin_metaik.gui.page import Entry
 from pin_metaik.gui.pages.arms import ArmsPage
+from pin_metaik.gui.pages.comparisons import ComparisonsPage
 from pin_metaik.gui.pages.heuristics import HeuristicsPage
+from pin_metaik.gui.pages.information import InformationPage
 from pin_metaik.gui.pages.paths import PathsPage
 from pin_metaik.gui.pages.platforms import PlatformsPage
 
@@ -13,4 +15,6 @@ PAGES: dict[str, Entry] = {
     "metaheuristics": Entry("Metaheuristics at work", HeuristicsPage),
     "paths": Entry("Path planning", PathsPage),
     "platforms": Entry("Stewart platforms", PlatformsPage),
+    "comparisons": Entry("Comparisons", ComparisonsPage),
+    "information": Entry("Information", InformationPage),
 }

@@ -1,4 +1,4 @@
-"""Path planning: obstacles drawn with the mouse, the shortest path, a metaheuristic beside it, and a motion along it."""
+"""Path planning: maps drawn with the mouse, the shortest path, a metaheuristic beside it, and a motion."""
 
 from pin_metaik.gui.pages.paths.page import PathsPage
 

@@ -88,6 +88,9 @@ class Wizard:
         stop.on_click(tab.doing(lambda: self._run.stop() if self._run is not None else None))
         self._bar = gui.add_progress_bar(0.0, visible=False)
         self._words = gui.add_markdown("")
+        self._found: Designed | None = None
+        self._result = gui.add_button("Take the design", visible=False, hint="Into the simulator and the steps above.")
+        self._result.on_click(tab.doing(self._take_result))
 
     def _furnish_source(self, gui: Any) -> None:
         tab, geometry, limits = self._tab, self._mechanism.geometry, self._mechanism.limits
@@ -201,5 +204,8 @@ class Wizard:
         found: Designed = run.result
         rows = "\n".join(f"| {name} | {value} |" for name, value in outcome(found))
         self._words.content = f"| | |\n|---|---|\n{rows}"
-        if found.success:
-            self._take(found.mechanism)
+        self._found, self._result.visible = found, found.success
+
+    def _take_result(self) -> None:
+        if self._found is not None:
+            self._take(self._found.mechanism)
