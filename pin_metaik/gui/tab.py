@@ -86,7 +86,7 @@ class Tab:
         with self.lock:
             self._kept[name] = dict(values)
             if self.name == name:
-                self.page = self._drop(self.page)
+                self._drop()
             self.show(name)
 
     def doing(self, work: Callback, title: str = "That does not work") -> Callable[[Any], None]:
@@ -183,14 +183,15 @@ class Tab:
         """Close the page that is open, keeping what it keeps."""
         if self.page is not None:
             self._kept[self.name] = self.page.kept()
-            self.page = self._drop(self.page)
+            self._drop()
         if self._panel is not None:
             self._panel.remove()
             self._panel = None
             self.client.scene.remove_by_name(ROOT)
 
-    def _drop(self, page: Page | None) -> None:
-        """End the work of a page."""
+    def _drop(self) -> None:
+        """End the work of the page that is open."""
+        page, self.page = self.page, None
         if page is not None:
             page.close()
         for run in self._runs:
@@ -241,7 +242,7 @@ class Tab:
         path = self.received(handle, ".json")
         state = kept.from_text(path.read_bytes(), path.name)
         self._take(state)
-        self.page = self._drop(self.page)
+        self._drop()
         self.show(self.name)
 
     def _share(self) -> None:

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
+import importlib
 import os
-import shutil
+import sys
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 from typing import Any
-from urllib.parse import urlsplit
 
 import pytest
 
-WAIT = 60_000.0  # ms, of a machine that does other things as well
-ARGUMENTS = (
-    "--headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader "
-    "--disable-quic --no-first-run --disable-background-networking --disable-component-update --disable-sync"
-)
+BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
+SMALL = (900, 600)  # pixels: what draws them is the processor
 
 
 @pytest.fixture(scope="module")
@@ -30,85 +28,35 @@ def toolbox() -> Iterator[Any]:
     assert not opened.tabs and not opened.pids
 
 
+def browsing_of() -> ModuleType:
+    """How the benchmarks use a browser; they are no package."""
+    sys.path.insert(0, str(BENCHMARKS))
+    try:
+        return importlib.import_module("toolbox_browser")
+    finally:
+        sys.path.remove(str(BENCHMARKS))
+
+
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
     """Debian's Chromium, driven by Playwright."""
-    found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    playwright = pytest.importorskip("playwright.sync_api")
+    playwright, browsing = pytest.importorskip("playwright.sync_api"), browsing_of()
+    found = browsing.chromium_path()
     if found is None and os.environ.get("PIN_METAIK_REQUIRE_CHROMIUM") == "1":
         pytest.fail("PIN_METAIK_REQUIRE_CHROMIUM=1 and there is no chromium")
     if found is None:
         pytest.skip("no chromium here")
     with playwright.sync_playwright() as started:
-        browser = started.chromium.launch(executable_path=found, args=ARGUMENTS.split())
+        browser = browsing.launched(started)
         yield browser
         browser.close()
 
 
-class Page:
-    """A tab, in the words of somebody who uses it.
-
-    Attributes:
-        page: Playwright's.
-        asked: Hosts that the tab asked for anything.
-    """
-
-    def __init__(self, chromium: Any, url: str) -> None:
-        self._context = chromium.new_context(viewport={"width": 1000, "height": 640})
-        self._context.set_default_timeout(WAIT)
-        self.page = self._context.new_page()
-        self.asked: set[str] = set()
-        self.faults: list[str] = []
-        self.page.on("request", lambda request: self.asked.add(urlsplit(request.url).hostname or ""))
-        self.page.on("websocket", lambda socket: self.asked.add(urlsplit(socket.url).hostname or ""))
-        self.page.on("pageerror", lambda error: self.faults.append(str(error)))
-        self.page.goto(url)
-        self.see("This tab")
-
-    def see(self, text: str) -> None:
-        """Wait until a text is there."""
-        self.page.get_by_text(text).first.wait_for()
-
-    def text(self) -> str:
-        """All that is written."""
-        return str(self.page.locator("body").inner_text())
-
-    def open(self, *folders: str) -> None:
-        """Open folders of the panel that are closed."""
-        for folder in folders:
-            self.page.get_by_text(folder, exact=True).last.click()
-
-    def click(self, button: str) -> None:
-        """Click a button."""
-        self.page.get_by_role("button", name=button, exact=True).first.click()
-
-    def choose(self, label: str, value: str) -> None:
-        """Choose an entry of a list."""
-        self.page.get_by_label(label, exact=True).first.click()
-        self.page.get_by_role("option", name=value, exact=True).first.click()
-
-    def type(self, label: str, value: str) -> None:
-        """Type into an input."""
-        box = self.page.get_by_label(label, exact=True).first
-        box.fill(value)
-        box.press("Enter")
-
-    def send(self, button: str, file: Path) -> None:
-        """Send a file by an upload button."""
-        with self.page.expect_file_chooser() as chooser:
-            self.click(button)
-        chooser.value.set_files(file)
-
-    def close(self) -> None:
-        """Close it."""
-        self._context.close()
-
-
 @pytest.fixture
-def tab(toolbox: Any, chromium: Any) -> Iterator[Page]:
+def tab(toolbox: Any, chromium: Any) -> Iterator[Any]:
     """A tab with the first page; nothing that it asks for leaves this machine."""
-    opened = Page(chromium, toolbox.url)
+    opened = browsing_of().Page(chromium, toolbox.url, SMALL)
     yield opened
     opened.close()
-    assert opened.asked <= {"127.0.0.1", ""}, opened.asked  # "": data that the page carries itself
+    assert opened.asked <= {"127.0.0.1", ""}, opened.asked
     assert not opened.faults

@@ -83,7 +83,8 @@ class Record:
                 raise ValueError("a population is not made of points")
             ended = content["outcome"]
             outcome = None if ended is None else Outcome(**{**ended, "x": np.asarray(ended["x"], dtype=float)})
-            record = Record(str(content["label"]), dict(content["task"]), *map(list, trace.T), populations)
+            evaluations, best = trace.T.tolist()
+            record = Record(str(content["label"]), dict(content["task"]), evaluations, best, populations)
         except InvalidSetting:
             raise
         except (ValueError, TypeError, KeyError, RecursionError) as reason:

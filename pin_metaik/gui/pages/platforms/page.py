@@ -47,8 +47,8 @@ class PlatformsPage:
             replace(
                 self._state,
                 mechanism=to_toml(self._mechanism),
-                xyz=tuple(map(float, self._simulator.xyz)),
-                rpy=tuple(map(float, self._simulator.rpy)),
+                xyz=self._simulator.xyz,
+                rpy=self._simulator.rpy,
             )
         )
 
