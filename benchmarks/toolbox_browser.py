@@ -10,12 +10,13 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-WAIT = 60_000.0  # ms, of a machine that does other things as well
+WAIT = 180_000.0  # ms, of a machine that does other things as well
 ARGUMENTS = (
     "--headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader "
     "--disable-quic --no-first-run --disable-background-networking --disable-component-update --disable-sync"
 )
 SIZE = (1280, 800)
+COARSE = "?fixedDpr=0.2"  # after an address: viser draws a fifth of the pixels each way
 
 
 def chromium_path() -> str | None:

@@ -1,4 +1,4 @@
-"""The pictures of docs/toolbox.md, taken by clicking through the pages: python benchmarks/toolbox_pictures.py [PAGE ...]."""
+"""The pictures of docs/toolbox.md, taken by clicking through: python benchmarks/toolbox_pictures.py [PAGE ...]."""
 
 from __future__ import annotations
 

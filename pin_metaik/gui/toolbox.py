@@ -62,6 +62,11 @@ class Toolbox:
         """The processes that work for it."""
         return self._crew.pids
 
+    @property
+    def busy(self) -> int:
+        """How many runs work for all tabs together, or wait for a process."""
+        return self._crew.busy
+
     def close(self) -> None:
         """End all tabs and all work."""
         self._gate.close()

@@ -135,6 +135,12 @@ class Crew:
         with self._lock:
             return [process.pid for process in self._processes]
 
+    @property
+    def busy(self) -> int:
+        """How many runs work, or wait for a process."""
+        with self._lock:
+            return len(self._waiting) + sum(process.run is not None for process in self._processes)
+
     def prepare(self) -> None:
         """Have a process ready, which takes a second."""
         with self._lock:

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
-SMALL = (900, 600)  # pixels: what draws them is the processor
+SMALL = (1000, 640)  # pixels
 
 
 @pytest.fixture(scope="module")
@@ -28,11 +28,11 @@ def toolbox() -> Iterator[Any]:
     assert not opened.tabs and not opened.pids
 
 
-def browsing_of() -> ModuleType:
-    """How the benchmarks use a browser; they are no package."""
+def benchmark(name: str) -> ModuleType:
+    """A module of the benchmarks, which are no package."""
     sys.path.insert(0, str(BENCHMARKS))
     try:
-        return importlib.import_module("toolbox_browser")
+        return importlib.import_module(name)
     finally:
         sys.path.remove(str(BENCHMARKS))
 
@@ -40,7 +40,7 @@ def browsing_of() -> ModuleType:
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
     """Debian's Chromium, driven by Playwright."""
-    playwright, browsing = pytest.importorskip("playwright.sync_api"), browsing_of()
+    playwright, browsing = pytest.importorskip("playwright.sync_api"), benchmark("toolbox_browser")
     found = browsing.chromium_path()
     if found is None and os.environ.get("PIN_METAIK_REQUIRE_CHROMIUM") == "1":
         pytest.fail("PIN_METAIK_REQUIRE_CHROMIUM=1 and there is no chromium")
@@ -53,9 +53,18 @@ def chromium() -> Iterator[Any]:
 
 
 @pytest.fixture
+def socket(toolbox: Any) -> Iterator[Any]:
+    """A tab without a browser, which only speaks with the toolbox."""
+    opened = benchmark("toolbox_socket").SocketTab(toolbox.url)
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
 def tab(toolbox: Any, chromium: Any) -> Iterator[Any]:
     """A tab with the first page; nothing that it asks for leaves this machine."""
-    opened = browsing_of().Page(chromium, toolbox.url, SMALL)
+    browsing = benchmark("toolbox_browser")
+    opened = browsing.Page(chromium, toolbox.url + browsing.COARSE, SMALL)
     yield opened
     opened.close()
     assert opened.asked <= {"127.0.0.1", ""}, opened.asked

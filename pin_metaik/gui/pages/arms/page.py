@@ -42,6 +42,7 @@ class ArmsPage:
         self._state = state_of(ArmsState, values, "the page of arms")
         self._scenery = arms.Scenery(tab.folder, [dict(entry) for entry in self._state.obstacles])
         self._asking = Latest[Question](self._solve)
+        self._collecting = Latest[Question](self._collect)
         self._closed = False
         self._answer: Answer | None = None
         self._ghosts: list[RobotDrawing] = []
@@ -89,6 +90,7 @@ class ArmsPage:
         """See ``Page``."""
         self._closed = True
         self._asking.close()
+        self._collecting.close()
 
     def _furnish_target(self, gui: Any) -> None:
         tab = self._tab
@@ -104,7 +106,7 @@ class ArmsPage:
     def _furnish_solutions(self, gui: Any) -> None:
         tab = self._tab
         find = gui.add_button("Find all")
-        find.on_click(tab.doing(self._find_all))
+        find.on_click(tab.doing(lambda: self._collecting.ask(self._question())))
         self._which = gui.add_slider("Solution", min=0, max=1, step=1, initial_value=0, disabled=True)
         self._which.on_update(tab.doing(self._step))
         hide = gui.add_button("Hide them")
@@ -240,9 +242,16 @@ class ArmsPage:
 
     # --- all solutions ---------------------------------------------------------------------------------------------
 
-    def _find_all(self) -> None:
-        question = self._question()
-        found = all_answers(question)
+    def _collect(self, question: Question) -> None:
+        """In a thread of its own: find all solutions, and show them as ghosts."""
+        with told(self._tab.client):
+            found = all_answers(question)
+            with self._tab.lock:
+                if not self._closed and question.arm is self._arm:
+                    with self._tab.client.atomic():
+                        self._show_all(found)
+
+    def _show_all(self, found: IKSolutions) -> None:
         self._hide_all()
         self._solutions = found
         proved = f", proved to be all ({found.complete})" if found.complete is not None else ", perhaps not all"

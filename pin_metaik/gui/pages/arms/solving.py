@@ -19,7 +19,7 @@ from pin_metaik.optimize import Budget
 DEADLINE = 0.1  # s
 LIVE = IKSolver(budget=Budget(seconds=DEADLINE))
 LIMIT = 32  # solutions that are shown
-ALL = Budget(seconds=2.0)
+ALL = 2.0  # s for all solutions
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +105,15 @@ def answered(question: Question) -> Answer:
 
 def all_answers(question: Question) -> IKSolutions:
     """All solutions, as far as two seconds find them."""
-    return solve_ik_all(question.arm.chain, question.target, question.q, limit=LIMIT, budget=ALL, world=question.world)
+    end = time.monotonic() + ALL
+    return solve_ik_all(
+        question.arm.chain,
+        question.target,
+        question.q,
+        limit=LIMIT,
+        world=question.world,
+        watch=lambda _: time.monotonic() > end,
+    )
 
 
 def code_of(question: Question, obstacles: bool) -> str:
