@@ -96,6 +96,13 @@ class Page:
                 raise TimeoutError(self.text())
             time.sleep(0.1)
 
+    def drag_mouse(self, start: tuple[float, float], end: tuple[float, float]) -> None:
+        """Press, move in steps, and let go."""
+        self.page.mouse.move(*start)
+        self.page.mouse.down()
+        self.page.mouse.move(*end, steps=8)
+        self.page.mouse.up()
+
     def scroll_to(self, text: str) -> None:
         """Bring a part of the panel into sight."""
         self.page.get_by_text(text, exact=True).last.evaluate("element => element.scrollIntoView({block: 'start'})")

@@ -13,7 +13,7 @@ from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.gui import kept
 from pin_metaik.gui.page import Entry, Page
 from pin_metaik.gui.uploads import received
-from pin_metaik.gui.words import say, told
+from pin_metaik.gui.words import FOLDER, say, told
 from pin_metaik.processes import Crew, Run, Told, Work
 
 ROOT = "/page"
@@ -43,7 +43,7 @@ class Tab:
 
     def __init__(self, client: Any, pages: Mapping[str, Entry], crew: Crew, address: str, place: str) -> None:
         self.client, self._pages, self._crew, self._address = client, pages, crew, address
-        self.folder = Path(tempfile.mkdtemp(prefix="pin_metaik_toolbox_"))
+        self.folder = Path(tempfile.mkdtemp(prefix=FOLDER))
         self.lock = threading.RLock()
         self.closed = False
         self.page: Page | None = None

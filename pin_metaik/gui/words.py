@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import logging
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
 from pin_metaik.errors import MetaIKError
 
+FOLDER = "pin_metaik_toolbox_"  # what the folders of tabs begin with; where they are is nobody's business
+PLACE = re.compile(rf"\S*{FOLDER}\w+[/\\]")
 LONGEST = 600  # characters of a message
 RED, YELLOW = "red", "yellow"
 LOG = logging.getLogger("pin_metaik.gui")
@@ -25,6 +28,7 @@ def in_words(error: BaseException) -> str:
             text = "that needs more memory than there is"
         case _:
             text = f"this is a fault of the toolbox, not yours ({type(error).__name__}); its log has the details"
+    text = PLACE.sub("", text)
     return text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."
 
 
