@@ -96,5 +96,5 @@ def test_unknown_methods_are_told_what_there_is() -> None:
 
 def test_a_peer_that_is_not_there_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("pin_metaik.lookup.find_spec", lambda name: None)
-    with pytest.raises(MissingExtra, match=r"pip install .*\[toolbox\]'"):
+    with pytest.raises(MissingExtra, match=r"pip install .*\[roboticstoolbox\]'"):
         METHODS["toolbox"].need()  # type: ignore[attr-defined]

@@ -46,4 +46,4 @@ def load(arm: SerialArm) -> Solve:
     return solve
 
 
-TOOLBOX = Peer("toolbox", "roboticstoolbox", "toolbox", load)
+TOOLBOX = Peer("toolbox", "roboticstoolbox", "roboticstoolbox", load)

@@ -1,0 +1,1 @@
+"""What pages draw: robots, maps, platforms and curves. Nothing here finds an answer."""

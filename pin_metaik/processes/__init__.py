@@ -1,0 +1,6 @@
+"""Long work, in processes that can be held, made to step, and ended."""
+
+from pin_metaik.processes.crew import Crew, Run, Stage
+from pin_metaik.processes.wire import Order, Told, Work
+
+__all__ = ["Crew", "Order", "Run", "Stage", "Told", "Work"]

@@ -1,0 +1,71 @@
+"""A toolbox and a Chromium for the tests of a module: one of each, and a fresh tab a test."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
+SMALL = (1000, 640)  # pixels
+
+
+@pytest.fixture(scope="module")
+def toolbox() -> Iterator[Any]:
+    """A toolbox on loopback, at any port."""
+    for package in ("viser", "trimesh", "shapely"):
+        pytest.importorskip(package)
+    from pin_metaik.gui import open_toolbox
+
+    with open_toolbox(port=0) as opened:
+        yield opened
+    assert not opened.tabs and not opened.pids
+
+
+def benchmark(name: str) -> ModuleType:
+    """A module of the benchmarks, which are no package."""
+    sys.path.insert(0, str(BENCHMARKS))
+    try:
+        return importlib.import_module(name)
+    finally:
+        sys.path.remove(str(BENCHMARKS))
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Any]:
+    """Debian's Chromium, driven by Playwright."""
+    playwright, browsing = pytest.importorskip("playwright.sync_api"), benchmark("toolbox_browser")
+    found = browsing.chromium_path()
+    if found is None and os.environ.get("PIN_METAIK_REQUIRE_CHROMIUM") == "1":
+        pytest.fail("PIN_METAIK_REQUIRE_CHROMIUM=1 and there is no chromium")
+    if found is None:
+        pytest.skip("no chromium here")
+    with playwright.sync_playwright() as started:
+        browser = browsing.launched(started)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def socket(toolbox: Any) -> Iterator[Any]:
+    """A tab without a browser, which only speaks with the toolbox."""
+    opened = benchmark("toolbox_socket").SocketTab(toolbox.url)
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def tab(toolbox: Any, chromium: Any) -> Iterator[Any]:
+    """A tab with the first page; nothing that it asks for leaves this machine."""
+    browsing = benchmark("toolbox_browser")
+    opened = browsing.Page(chromium, toolbox.url + browsing.COARSE, SMALL)
+    yield opened
+    opened.close()
+    assert opened.asked <= {"127.0.0.1", ""}, opened.asked
+    assert not opened.faults
