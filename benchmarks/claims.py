@@ -1,6 +1,6 @@
 """Whether what is claimed is so: claimed successes by an independent judge, and UNREACHABLE of feasible targets.
 
-    python benchmarks/claims.py [--models 200] [--each 4000] [--robots-each 9000] [--workers 2] [--kept FILE] [--out PAGE]
+    python benchmarks/claims.py [--models 200] [--each 4000] [--robots-each 9000] [--workers 2] [--out PAGE]
 
 Robots by name and random models (see random_models.py): one to forty joints of every kind, up to three frames. Targets
 are the poses of configurations that are random, at limits, in corners, at right angles and singular, exact or moved by
@@ -62,7 +62,7 @@ class Counts(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """An answer to a target: its poses (T, 4, 4), its tolerances (m, rad), the configuration, and what is said of it."""
+    """An answer: the poses asked for (T, 4, 4), their tolerances (m, rad), the configuration, what is said of it."""
 
     poses: Floats
     tolerances: tuple[float, float]
@@ -81,7 +81,7 @@ def counted(name: str, count: int) -> Counts:
     """What came of a robot by name, or of random model number ``name``."""
     rng = np.random.default_rng([7, *name.encode()])
     chain = random_model(Random(int(name))).chain() if name.isdigit() else named(name)
-    began, judge, counts = process_time(), Judge(chain.model, chain.frames), Counts()
+    began, judge, counts = process_time(), Judge(chain.model, chain.frame_ids), Counts()
     for answer in answers(chain, count if chain.has_pose_solver else max(1, count // SLOW), rng):
         claims = answer.status is mik.IKStatus.SOLVED
         near, aligned = (tolerance + ROUNDING for tolerance in answer.tolerances)
@@ -112,9 +112,7 @@ def answer_alone(chain: mik.Chain, rng: np.random.Generator) -> Answer:
     near, aligned = 10.0 ** rng.uniform(-7.0, -2.0, 2)
     poses = feasible(chain, rng, near, aligned)
     tolerances = {"position_tolerance": float(near), "orientation_tolerance": float(aligned)}
-    targets = [
-        mik.Target(pin.SE3(pose), frame, **tolerances) for frame, pose in zip(chain.frames, poses, strict=True)
-    ]
+    targets = [mik.Target(pin.SE3(pose), frame, **tolerances) for frame, pose in zip(chain.frames, poses, strict=True)]
     start = chain.q(chain.box.sample(rng, 1)[0]) if rng.random() < 0.5 else None
     result = mik.solve_ik(chain, targets, start, solver=FEW)
     return Answer(poses, (float(near), float(aligned)), result.q, result.status)
@@ -122,7 +120,9 @@ def answer_alone(chain: mik.Chain, rng: np.random.Generator) -> Answer:
 
 def feasible(chain: mik.Chain, rng: np.random.Generator, near: float, aligned: float) -> Floats:
     """Poses (T, 4, 4) that one configuration reaches, exactly or by no more than the tolerances (m, rad)."""
-    family = str(rng.choice(FAMILIES if chain.n <= 10 else FAMILIES[:-1]))  # the last takes long to find for many joints
+    family = str(
+        rng.choice(FAMILIES if chain.n <= 10 else FAMILIES[:-1])
+    )  # the last takes long to find for many joints
     poses = chain.poses(coordinates(chain, family, rng))[0].copy()
     if rng.random() < 0.5:
         for pose in poses:
@@ -152,11 +152,13 @@ def page(counts: dict[str, Counts]) -> Iterator[str]:
     """The page, paragraph by paragraph."""
     yield "# Claims, judged"
     yield conditions()
-    kinds = {"robots by name": [n for n in counts if not n.isdigit()], "random models": [n for n in counts if n.isdigit()]}
-    table = [
-        "| | number | feasible targets | claimed successes | false | answers outside limits | called out of reach | processor time, s |",
-        "|---|---:|---:|---:|---:|---:|---:|---:|",
-    ]
+    kinds = {
+        "robots by name": [n for n in counts if not n.isdigit()],
+        "random models": [n for n in counts if n.isdigit()],
+    }
+    titles = ["number", "feasible targets", "claimed successes", "false", "answers outside limits"]
+    titles += ["called out of reach", "processor time, s"]
+    table = [f"| | {' | '.join(titles)} |", "|---" + len(titles) * "|---:" + "|"]
     every = {**kinds, "all": [*counts]}
     for kind, names in every.items():
         total = sum((counts[name] for name in names), Counts())

@@ -18,10 +18,10 @@ UNIT = 1e-9  # by how much the length of a quaternion, or of a cosine and sine, 
 class Judge:
     """Forward kinematics and limits of a model, apart from all that solvers keep."""
 
-    def __init__(self, model: pin.Model, frames: Sequence[str]) -> None:
-        """Find the frames, and the joints that move them."""
+    def __init__(self, model: pin.Model, frames: Sequence[int]) -> None:
+        """Take the frames by their ids, and find which entries have limits."""
         self.model, self.data = model, model.createData()
-        self.frames = [model.getFrameId(frame) for frame in frames]
+        self.frames = list(frames)
         single = [joint for joint in list(model.joints)[1:] if joint.nq]
         entries = [np.arange(joint.idx_q, joint.idx_q + joint.nq) for joint in single]
         units, plain = list[NDArray[np.int64]](), list[int]()
@@ -53,9 +53,7 @@ def error(reached: Floats, asked: Floats) -> tuple[float, float]:
     return float(np.linalg.norm(d[:3, 3])), 2.0 * math.asin(min(1.0, chord))
 
 
-def _parts(
-    joint: pin.JointModel, entries: NDArray[np.int64]
-) -> Iterator[tuple[list[NDArray[np.int64]], list[int]]]:
+def _parts(joint: pin.JointModel, entries: NDArray[np.int64]) -> Iterator[tuple[list[NDArray[np.int64]], list[int]]]:
     """Which of a joint's entries have length 1 together, and which are angles and lengths with limits."""
     kind = joint.shortname().removeprefix("JointModel")
     if kind == "Composite":
