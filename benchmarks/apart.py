@@ -1,4 +1,4 @@
-"""Many calls in processes of their own: what kills one, or never comes back, is told, and the next goes on behind it."""
+"""Many calls in processes of their own: what kills one, or never comes back, is told, and the next goes on."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import resource
 import select
 import signal
 import time
+import traceback
 from collections.abc import Callable, Iterator
 from typing import TypeVar
 
@@ -86,13 +87,16 @@ def apart(count: int, call: Callable[[int], T], ended: Callable[[int, str], T], 
 
 def _work(writer: int, numbers: range, call: Callable[[int], object], more: int) -> None:
     """The life of a child: one call after the other. It never returns."""
+    limited = room(address_space() + more) if more else contextlib.nullcontext()
     try:
-        with os.fdopen(writer, "wb", buffering=0) as out:
-            with room(address_space() + more) if more else contextlib.nullcontext():
-                for i in numbers:
-                    out.write(pickle.dumps(call(i)))
-    finally:
+        with os.fdopen(writer, "wb", buffering=0) as out, limited:
+            for i in numbers:
+                out.write(pickle.dumps(call(i)))
         os._exit(0)
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        os._exit(1)
 
 
 def _comes(file: int, late: float) -> bool:

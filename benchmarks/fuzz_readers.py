@@ -66,7 +66,7 @@ class Reader:
 URDF = b"""<robot name="two"><material name="m"><color rgba="1 0 0 1"/></material><link name="base"/>
 <link name="arm"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
 <collision><origin xyz="0 0 0.1" rpy="0 1 0"/><geometry><box size="0.1 0.1 0.2"/></geometry></collision>
-<visual><geometry><mesh filename="package://a/m.stl" scale="1 1 1"/></geometry><material name="m"/></visual></link>
+<visual><geometry><mesh filename="package://m.obj" scale="1 1 1"/></geometry><material name="m"/></visual></link>
 <link name="hand"><collision><geometry><cylinder radius="0.1" length="0.2"/></geometry></collision></link>
 <link name="tool"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
 <joint name="j" type="revolute"><origin xyz="0 0 1" rpy="0 0 1.57"/><parent link="base"/><child link="arm"/>
@@ -78,7 +78,7 @@ URDF = b"""<robot name="two"><material name="m"><color rgba="1 0 0 1"/></materia
 multiplier="-2" offset="0.1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint><link name="tip"/></robot>"""
 MJCF = b"""<mujoco model="two"><compiler angle="radian" autolimits="true" meshdir="."/><option gravity="0 0 -9"/>
 <default><joint damping="1" range="-1 1"/><default class="c"><geom type="capsule"/></default></default>
-<asset><mesh name="mesh" file="m.stl"/></asset><worldbody><body name="a" pos="0 0 1" quat="1 0 0 0">
+<asset><mesh name="mesh" file="m.obj"/></asset><worldbody><body name="a" pos="0 0 1" quat="1 0 0 0">
 <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/><joint name="j" type="hinge" axis="0 0 1"/>
 <geom class="c" size="0.1 0.2"/><body name="b" pos="0 0 0.3" euler="0 1 0"><joint name="k" type="slide" axis="1 0 0"
 range="0 0.2"/><geom type="box" size="0.1 0.1 0.1"/><site name="tip" pos="0 0 0.1"/></body></body></worldbody>
@@ -271,8 +271,8 @@ def readers() -> dict[str, Reader]:
 
     links = {"base", "arm", "hand", "tool", "tip"}
     return {
-        "URDF": Reader("r.urdf", [URDF], read_robot, XML),
-        "MJCF": Reader("r.xml", [MJCF], read_robot, XML),
+        "URDF": Reader("r.urdf", [URDF], read_robot, XML, mesh),
+        "MJCF": Reader("r.xml", [MJCF], read_robot, XML, mesh),
         "SRDF": Reader("r.srdf", [SRDF], lambda path: read_srdf(path, links, strict=True), XML),
         "DH table, TOML": Reader("r.toml", tables, read_robot, TOML),
         "scene of shapes, TOML": Reader("s.toml", good("collision/scenes/shelf.toml"), read_scene, TOML),

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, checked
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.files import read_arrays
 from pin_metaik.ik import IKStatus
 from pin_metaik.output import writable
 from pin_metaik.plain import fields_of
@@ -97,19 +98,19 @@ class Reachability:
         Raises:
             InvalidSetting: If there is no such file, or it holds no map.
         """
+        file = read_arrays(Path(path), InvalidSetting, "a map that Reachability.save has written")
         try:
-            with np.load(path, allow_pickle=False) as file:
-                k, m = file["status"].shape
-                a, b, c = (int(n) for n in file["shape"])
-                found = Reachability(
-                    array("positions", file["positions"], k, 3),
-                    array("orientations", file["orientations"], "...", 3, 3).reshape(-1, 3, 3),
-                    file["status"].astype(np.uint8),
-                    file["manipulability"].astype(np.float32).reshape(k, m),
-                    (a, b, c),
-                    float(file["seconds"]),
-                )
-        except (OSError, ValueError, KeyError, EOFError, TypeError) as error:
+            k, m = file["status"].shape
+            a, b, c = (int(n) for n in file["shape"])
+            found = Reachability(
+                array("positions", file["positions"], k, 3),
+                array("orientations", file["orientations"], "...", 3, 3).reshape(-1, 3, 3),
+                file["status"].astype(np.uint8),
+                file["manipulability"].astype(np.float32).reshape(k, m),
+                (a, b, c),
+                float(file["seconds"]),
+            )
+        except (ValueError, KeyError, TypeError, OverflowError) as error:
             raise InvalidSetting(f"{path} is not a map that Reachability.save has written: {error}") from None
         return found
 

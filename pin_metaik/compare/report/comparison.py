@@ -8,7 +8,6 @@ from typing import Any
 
 from pin_metaik.arguments import checked
 from pin_metaik.compare.folder.environment import read_environment
-from pin_metaik.compare.folder.store import replace_text
 from pin_metaik.compare.report.by_case import by_case, convergence, duels, rates
 from pin_metaik.compare.report.html import html
 from pin_metaik.compare.report.overview import overview, reading, winners
@@ -18,7 +17,7 @@ from pin_metaik.compare.report.worst import trouble, worst
 from pin_metaik.compare.report.write import need_figures, write
 from pin_metaik.compare.results.results import Results, read_results
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.output import writable
+from pin_metaik.output import replace_text, writable
 
 TITLE = "Inverse kinematics where it is hard"
 PAGE, STEM = "report.html", "report"
