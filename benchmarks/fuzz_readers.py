@@ -85,7 +85,8 @@ range="0 0.2"/><geom type="box" size="0.1 0.1 0.1"/><site name="tip" pos="0 0 0.
 <keyframe><key name="home" qpos="0 0"/></keyframe></mujoco>"""
 SRDF = b"""<robot name="two"><group name="all"><chain base_link="base" tip_link="tool"/></group>
 <group_state name="home" group="all"><joint name="j" value="0"/></group_state>
-<disable_collisions link1="base" link2="arm" reason="Adjacent"/><disable_collisions link1="arm" link2="tool"/></robot>"""
+<disable_collisions link1="base" link2="arm" reason="Adjacent"/>
+<disable_collisions link1="arm" link2="tool"/></robot>"""
 SCENE = b"""{"obstacle": [{"name": "a", "shape": "box", "size": [1, 1, 0.1], "position": [0, 0, 1], "rpy": [0, 0, 1],
 "touching": ["a"], "padding": 0.01}, {"name": "b", "shape": "sphere", "radius": 0.1},
 {"name": "c", "shape": "capsule", "radius": 0.1, "length": 1}, {"name": "d", "shape": "halfspace", "normal": [0, 0, 1],
@@ -96,7 +97,8 @@ SCENE = b"""{"obstacle": [{"name": "a", "shape": "box", "size": [1, 1, 0.1], "po
 OBJ = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
 PLY = (
     b"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n"
-    b"property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"
+    b"property list uchar int vertex_indices\nend_header\n"
+    b"0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"
 )
 WKT = b"POLYGON ((0 0, 1 0, 1 1, 0 1, 0 0), (0.2 0.2, 0.4 0.2, 0.4 0.4, 0.2 0.2))\nPOINT (3 3)\nLINESTRING (4 4, 5 5)\n"
 GEOJSON = b"""{"type": "FeatureCollection", "start": [-5, 0], "goal": [9, 9], "features": [{"type": "Feature",
@@ -127,8 +129,8 @@ TO_SOLVE: dict[str, tuple[str, ...]] = {
 }
 WORDS = (
     "", "-", "--", "-1", "0", "1", "1e308", "nan", "inf", "9" * 400, "x" * 3000, "\ud800", "é", "a=b", "=", ",", "1,2",
-    "--help", "--json", "--out", "--q0", "--position", "--frame", "--limits", "--world", "--cells", "folder", "file.toml",
-    "../../x", "/", "/dev/null", "~", "rv7fl", "stroke_50", "ten_obstacles", "solve", "[red]", "%s", "\n",
+    "--help", "--json", "--out", "--q0", "--position", "--frame", "--limits", "--world", "--cells", "folder",
+    "file.toml", "../../x", "/", "/dev/null", "~", "rv7fl", "stroke_50", "ten_obstacles", "solve", "[red]", "%s", "\n",
 )  # fmt: skip
 
 

@@ -99,10 +99,8 @@ class Appender:
             CannotWrite: There is no room for them, or the file is gone.
         """
         lines = (json.dumps(trial.row(), allow_nan=False, separators=(",", ":")) for trial in trials)
-        left, before = (
-            memoryview("".join(f"{line}\n" for line in lines).encode()),
-            os.fstat(self._file.fileno()).st_size,
-        )
+        left = memoryview("".join(f"{line}\n" for line in lines).encode())
+        before = os.fstat(self._file.fileno()).st_size
         try:
             while left:  # a disk that is nearly full takes a part without a word
                 left = left[self._file.write(left) :]
