@@ -16,10 +16,7 @@ import functools
 import inspect
 import itertools
 import os
-import pickle
 import platform
-import resource
-import signal
 import tempfile
 import time
 import traceback
@@ -33,6 +30,7 @@ from typing import Any
 import hypothesis
 import numpy as np
 import pinocchio as pin
+from apart import Hangs, alarm, apart, room
 from door_calls import CALLS, MODULES, OWNERS, PATIENT, POSE, REGISTRIES, chain, scene
 from hypothesis import strategies as st
 
@@ -121,10 +119,6 @@ def drawn() -> st.SearchStrategy[Any]:
         st.lists(st.lists(st.floats(), max_size=4), max_size=4),
         st.sampled_from(ODD).map(lambda make: make()),
     )
-
-
-class Hangs(BaseException):
-    """A call that did not come back in time."""
 
 
 @dataclass(frozen=True)
@@ -284,22 +278,6 @@ def _with_arguments() -> list[tuple[Door, list[str]]]:
     return [(door, sorted(taken)) for door in doors().values() if (taken := CALLS[door.name]())]
 
 
-@contextlib.contextmanager
-def alarm(seconds: float) -> Iterator[None]:
-    """Raise ``Hangs`` in what takes longer."""
-
-    def ring(*_: object) -> None:
-        raise Hangs
-
-    before = signal.signal(signal.SIGALRM, ring)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)
-
-
 def listed(every: int = 1) -> Iterator[Call]:
     """Every argument of every door replaced by every odd value of the list, one at a time; or every so many of that."""
     places = ((door, parameter) for door in doors().values() for parameter in CALLS[door.name]())
@@ -331,42 +309,22 @@ def warm_up() -> None:
 def elsewhere() -> Iterator[None]:
     """In a folder of its own, with bounded memory, and nothing printed."""
     before = Path.cwd()
-    limits = resource.getrlimit(resource.RLIMIT_AS)
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder, room(ROOM):
         os.chdir(folder)
-        resource.setrlimit(resource.RLIMIT_AS, (ROOM, limits[1]))
         try:
             yield
         finally:
-            resource.setrlimit(resource.RLIMIT_AS, limits)
             os.chdir(before)
 
 
-def sweep(todo: list[Call]) -> dict[int, Knock]:
+def sweep(todo: list[Call]) -> list[Knock]:
     """Knock at all of them in processes of their own: what kills one is a fault, and the next goes on behind it."""
-    done: dict[int, Knock] = {}
-    at = 0
-    while at < len(todo):
-        reader, writer = os.pipe()
-        child = os.fork()
-        if child == 0:
-            os.close(reader)
-            with os.fdopen(writer, "wb") as out:
-                for i in range(at, len(todo)):
-                    pickle.dump((i, knock(*todo[i])), out)
-                    out.flush()
-            os._exit(0)
-        os.close(writer)
-        with os.fdopen(reader, "rb") as back, contextlib.suppress(EOFError):
-            while True:
-                i, outcome = pickle.load(back)
-                done[i], at = outcome, i + 1
-        _, status = os.waitpid(child, 0)
-        if at < len(todo):
-            door, odd = todo[at]
-            done[at] = Knock(0.0, False, Fault(door.name, changed(odd), f"the process ends with status {status}", ""))
-            at += 1
-    return done
+
+    def ended(i: int, how: str) -> Knock:
+        door, odd = todo[i]
+        return Knock(0.0, False, Fault(door.name, changed(odd), how, ""))
+
+    return apart(len(todo), lambda i: knock(*todo[i]), ended, 2.0 * LATE)
 
 
 def drawn_calls(count: int, seed: int) -> list[Call]:
@@ -387,14 +345,14 @@ def drawn_calls(count: int, seed: int) -> list[Call]:
     return found
 
 
-def page(todo: list[Call], done: dict[int, Knock], command: str) -> Iterator[str]:
+def page(todo: list[Call], done: list[Knock], command: str) -> Iterator[str]:
     """The page on a sweep, line by line."""
     names = ("pin", "numpy", "hypothesis")
     versions = ", ".join(f"{name} {version(name)}" for name in names)
     machine = f"{os.cpu_count()}-core {platform.machine()}, shared, Python {platform.python_version()}, {versions}"
-    faults = [knock.fault for knock in done.values() if knock.fault is not None]
+    faults = [knock.fault for knock in done if knock.fault is not None]
     hangs = sum("hangs" in fault.error for fault in faults)
-    seconds = sorted(knock.seconds for knock in done.values())
+    seconds = sorted(knock.seconds for knock in done)
     middle = seconds[len(seconds) // 2]
     yield "# Odd arguments at every public door"
     yield f"`{command}`, {datetime.date.today()}, {machine}."

@@ -12,11 +12,29 @@ from urllib.parse import unquote, urlsplit
 
 LISTED, NEAR = 100, 8  # longer lists than this are cut to the nearest names
 LONGEST = 80  # characters of a name in a message
+MOST = 2_000  # characters of a message
 
 
 def shortened(text: str) -> str:
     """The beginning of a text that is too long for a message, e.g. a whole file given as a name."""
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}..."
+
+
+def readable(text: str) -> str:
+    """A message as terminals take it: in one line, without what steers them, and short enough to be read.
+
+    It may quote what a file holds, whatever that is. What is too long is cut in the middle: the place comes first, and
+    what would have worked last.
+    """
+    if len(text) > MOST:
+        text = f"{text[: MOST // 2]} ... {text[-MOST // 4 :]}"
+    if text.isprintable():
+        return text
+    return "".join(one if one.isprintable() else _escaped(one) for one in " ".join(text.split("\n")))
+
+
+def _escaped(character: str) -> str:
+    return character.encode("unicode_escape").decode("ascii")
 
 
 def meant(name: str, known: Collection[str]) -> str:
@@ -27,6 +45,9 @@ def meant(name: str, known: Collection[str]) -> str:
 
 class MetaIKError(ValueError):
     """A call that makes no sense. A target that cannot be reached is not one: that is a status of the result."""
+
+    def __init__(self, message: str = "") -> None:
+        super().__init__(readable(str(message)))
 
     def __reduce__(self) -> tuple[object, ...]:
         """Pickle by message and values, whatever ``__init__`` takes: an error has to come back from a worker."""

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Collection, Mapping
+from decimal import Decimal
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
+from zipfile import ZipFile, is_zipfile
+
+import numpy as np
 
 from pin_metaik.errors import MetaIKError, meant
 
 Error = type[MetaIKError]
+
+DEEPEST = 100  # values in each other
+LARGEST = 10**308  # whole numbers beyond it are none that a float holds
+HEAVIEST = 1 << 30  # bytes of the arrays in a file, unpacked
 
 
 def read_text(path: Path | Traversable, error: Error, kind: str = "text") -> str:
@@ -37,10 +45,89 @@ def read_json(path: Path | Traversable, error: Error, kind: str = "JSON") -> Any
         error: What to raise if it is missing or malformed, or has a key twice; made from one sentence.
         kind: Kind of the file, for the message.
     """
-    text = read_text(path, error, kind)
+    return json_values(read_text(path, error, kind), path, error, kind)
+
+
+def json_values(text: str | bytes, place: object, error: Error, kind: str = "JSON") -> Any:
+    """The contents of a text in JSON.
+
+    Args:
+        text: The text.
+        place: Where it is.
+        error: What to raise if it is malformed, or has a key twice; made from one sentence.
+        kind: What it is, for the message.
+    """
     try:
-        return json.loads(text, object_pairs_hook=_once)
+        content = json.loads(text, object_pairs_hook=_once)
     except (ValueError, RecursionError) as reason:
+        raise error(f"{place} is not {kind}: {reason}") from None
+    return plain_values(content, len(text), place, error, kind)
+
+
+def plain_values(content: Any, size: int, place: object, error: Error, kind: str) -> Any:
+    """The contents of a text, if they are such that whatever is done with them ends.
+
+    Args:
+        content: Values in lists and mappings.
+        size: Characters of the text: where there are more values, they are aliases of each other, as YAML has them,
+            and to write them down may take for ever.
+        place: Where the text is.
+        error: What to raise if values are so many, too deep in each other, or whole numbers that no float holds.
+        kind: What the text is, for the message.
+    """
+    waiting, count = [(content, 0)], 0
+    while waiting:
+        value, depth = waiting.pop()
+        count += 1
+        if depth > DEEPEST or count > size + 1:
+            wrong = "values are nested too deeply" if depth > DEEPEST else "its aliases stand for too many values"
+            raise error(f"{place} is not {kind} that can be read: {wrong}")
+        if _too_large(value):
+            raise error(f"{place} is not {kind} that can be read: it has a number of more than 308 digits")
+        if isinstance(value, dict):
+            waiting += [(one, depth + 1) for pair in value.items() for one in pair]
+        elif isinstance(value, (list, tuple, set)):
+            waiting += [(one, depth + 1) for one in value]
+    return content
+
+
+def _too_large(value: object) -> bool:
+    """Whether it is a finite number that no float holds."""
+    if isinstance(value, Decimal):
+        return value.is_finite() and abs(value) > LARGEST
+    return isinstance(value, int) and abs(value) > LARGEST
+
+
+def read_array(path: Path, error: Error, kind: str) -> np.ndarray:
+    """The one array in a ``.npy`` file; arguments as of ``read_arrays``."""
+    arrays = read_arrays(path, error, kind)
+    if "" not in arrays:
+        raise error(f"{path} is not {kind}: it holds several arrays")
+    return arrays[""]
+
+
+def read_arrays(path: Path, error: Error, kind: str) -> dict[str, np.ndarray]:
+    """The arrays in a ``.npz`` file by name, or that of a ``.npy`` by no name; never an object, which could run code.
+
+    Args:
+        path: The file.
+        error: What to raise if it is missing or malformed, or its arrays are too large.
+        kind: Kind of the file, for the message.
+    """
+    try:
+        file = path.expanduser()
+        if is_zipfile(file):
+            with ZipFile(file) as archive:
+                if sum(member.file_size for member in archive.infolist()) > HEAVIEST:
+                    raise error(f"{path} is not {kind}: unpacked it has more than {HEAVIEST >> 20:,} MiB")
+            with np.load(file, allow_pickle=False) as opened:
+                return {name: opened[name] for name in opened.files}
+        return {"": np.load(file, allow_pickle=False)}
+    except MetaIKError:
+        raise
+    except OSError as reason:
+        raise error(f"cannot read {path}: {reason.strerror or reason}") from None
+    except Exception as reason:  # a damaged file fails in a dozen ways: numpy reads its header as Python
         raise error(f"{path} is not {kind}: {reason}") from None
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from pin_metaik.arrays import Array
@@ -27,6 +28,33 @@ def writable(path: str | Path, *, folder: bool = False) -> Path:
         return _folder(where) if folder else _file(where)
     except OSError as error:
         raise CannotWrite(f"cannot write {where}: {error.strerror or error}") from None
+
+
+def replace_text(path: Path, text: str) -> None:
+    """Write a file as a whole or not at all.
+
+    Raises:
+        CannotWrite: It cannot be written.
+    """
+    with replaced(path) as partial:
+        partial.write_text(text, encoding="utf-8")
+
+
+@contextmanager
+def replaced(path: Path) -> Iterator[Path]:
+    """The path of a file to write, which takes the place of another once it is whole.
+
+    Raises:
+        CannotWrite: It cannot be written; the other one is left as it was.
+    """
+    partial = path.with_suffix(".partial")
+    try:
+        yield partial
+        partial.replace(path)
+    except OSError as error:
+        with suppress(OSError):
+            partial.unlink(missing_ok=True)
+        raise CannotWrite(f"cannot write {path}: {error.strerror or error}") from None
 
 
 def write_table(file: str | Path, header: Iterable[str], rows: Array) -> None:

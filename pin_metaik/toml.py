@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, TypeAlias, TypeVar
 
 from pin_metaik.errors import InvalidTable, MetaIKError
-from pin_metaik.files import known_keys, read_text
+from pin_metaik.files import known_keys, plain_values, read_text
 from pin_metaik.units import PURE, Unit
 
 T = TypeVar("T")
@@ -30,9 +30,11 @@ def read_toml(
     """
     text = read_text(path, error, "TOML")
     try:
-        return tomllib.loads(text, parse_float=number)
+        content = tomllib.loads(text, parse_float=number)
     except (ValueError, RecursionError) as reason:
         raise error(f"{path} is not TOML: {reason}") from None
+    plain_values(content, len(text), path, error, "TOML")
+    return content
 
 
 class Table:

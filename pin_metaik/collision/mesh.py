@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.collision.numbers import real
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.notice import notice
+from pin_metaik.ply import SUFFIX, read_ply
 from pin_metaik.said import warn
 
 FLAT = 1e-9  # thickness of a set of points, in its lengths, below which it has none
@@ -113,13 +114,16 @@ def surface(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> Any:
 
 
 def _read(file: Path, scale: float) -> Mesh:
+    if file.suffix.lower() == SUFFIX:
+        vertices, triangles = read_ply(file, InvalidGeometry)
+        return Mesh(scale * vertices, triangles, file.name)
     try:
         model = coal.MeshLoader(coal.BV_OBBRSS).load(str(file), np.full(3, scale))
     except (ValueError, RuntimeError) as error:
         reason = " ".join(str(error).rpartition("message: ")[2].split())
         raise InvalidGeometry(f"{file} cannot be read as a mesh: {reason}") from None
-    triangles = [[model.tri_indices(i)[c] for c in range(3)] for i in range(model.num_tris)]
-    return Mesh(np.array(model.vertices()), np.array(triangles, dtype=np.int64).reshape(-1, 3), file.name)
+    corners = [[model.tri_indices(i)[c] for c in range(3)] for i in range(model.num_tris)]
+    return Mesh(np.array(model.vertices()), np.array(corners, dtype=np.int64).reshape(-1, 3), file.name)
 
 
 def existing_file(path: object, what: str) -> Path:

@@ -19,7 +19,7 @@ from pin_metaik.collision.numbers import three
 from pin_metaik.collision.obstacle import Obstacle
 from pin_metaik.collision.shapes import Box, Capsule, Cone, Cylinder, HalfSpace, Plane, Shape, Sphere
 from pin_metaik.errors import InvalidGeometry, UnknownName
-from pin_metaik.files import read_json
+from pin_metaik.files import read_array, read_json
 from pin_metaik.kinematics.pose import rpy_matrix
 from pin_metaik.lookup import lookup
 from pin_metaik.toml import read_toml
@@ -63,11 +63,7 @@ def read_points(path: str | Path) -> NDArray[np.float64]:
         InvalidGeometry: If there is no such file, or it holds no array.
     """
     file = existing_file(path, "point cloud")
-    try:
-        points: NDArray[np.float64] = np.load(file, allow_pickle=False)
-    except (OSError, ValueError, EOFError) as error:
-        raise InvalidGeometry(f"{file} is not a .npy file of points: {error}") from None
-    return points
+    return read_array(file, InvalidGeometry, "a .npy file of points")
 
 
 KINDS: dict[str, Kind] = {

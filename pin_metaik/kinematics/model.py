@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from typing import Any, Protocol
 
 import numpy as np
@@ -10,9 +11,9 @@ import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.arguments import array, shown
-from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSetting, UnknownName
+from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSetting, UnknownName, UnsupportedJoint
 from pin_metaik.kinematics.coordinates import Coordinates, consecutive
-from pin_metaik.kinematics.joints import RIGHT, Entry, Parts
+from pin_metaik.kinematics.joints import RIGHT, Entry, Parts, parts_of
 from pin_metaik.kinematics.limits import Limits, finite_or_infinite
 
 UNIT = 1e-6  # by how much the length of a quaternion may differ from 1
@@ -55,11 +56,24 @@ def model_of(robot: pin.Model | HasModel) -> pin.Model:
 
 
 def neutral_inside(model: pin.Model) -> NDArray[np.float64]:
-    """The neutral configuration (nq,), each joint with one coordinate brought inside its limits."""
+    """The neutral configuration (nq,), each angle and length brought inside its limits."""
     q: NDArray[np.float64] = pin.neutral(model)
-    single = [joint.idx_q for joint in list(model.joints)[1:] if joint.nq == 1]
-    q[single] = np.minimum(np.maximum(q[single], model.lowerPositionLimit[single]), model.upperPositionLimit[single])
+    plain = [entry for joint in range(1, model.njoints) for entry in _numbers_of(model, joint)]
+    q[plain] = np.minimum(np.maximum(q[plain], model.lowerPositionLimit[plain]), model.upperPositionLimit[plain])
     return q
+
+
+def _numbers_of(model: pin.Model, joint: int) -> list[int]:
+    """The entries of a joint that are angles and lengths, of which alone limits are told."""
+    kind, found = model.joints[joint], list[int]()
+    if kind.nq == kind.nv:
+        return list(range(kind.idx_q, kind.idx_q + kind.nq))
+    entry = int(kind.idx_q)
+    with suppress(UnsupportedJoint):  # it stays at neutral
+        for part in parts_of(model, joint).entries:
+            found += [entry] if part is Entry.NUMBER else []
+            entry += part.value
+    return found
 
 
 def entries_of(model: pin.Model, joints: list[int]) -> NDArray[np.int64]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ import numpy as np
 from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting, MetaIKError
+from pin_metaik.files import read_arrays
 from pin_metaik.learn.network import Network
 from pin_metaik.learn.regressor import Regressor, Scale
 from pin_metaik.learn.trainers import Training
@@ -19,6 +19,7 @@ from pin_metaik.output import writable
 
 SUFFIX = ".npz"
 VERSION = 1
+NETWORK = "a saved network"  # what such a file is, in messages
 KEYS = ("version", "layers", "weights", "inputs", "output", "trace", "trained")
 
 
@@ -44,7 +45,7 @@ def load_regressor(file: str | Path) -> Regressor:
     Raises:
         InvalidSetting: The file is missing, or is none of these.
     """
-    return regressor_of(read_arrays(Path(file)), str(file))
+    return regressor_of(read_arrays(Path(file), InvalidSetting, NETWORK), str(file))
 
 
 def network_file(file: str | Path) -> Path:
@@ -72,21 +73,6 @@ def save_arrays(file: Path, arrays: Mapping[str, Any]) -> None:
     """Write arrays by name."""
     with file.open("wb") as opened:
         np.savez(opened, **{name: np.asarray(values) for name, values in arrays.items()})  # type: ignore[arg-type]
-
-
-def read_arrays(file: Path) -> dict[str, np.ndarray]:
-    """Arrays by name; never an object, which could run code.
-
-    Raises:
-        InvalidSetting: The file is missing, or holds something else.
-    """
-    try:
-        with np.load(file.expanduser(), allow_pickle=False) as opened:
-            return {name: opened[name] for name in opened.files}
-    except OSError as error:
-        raise InvalidSetting(f"cannot read {file}: {error.strerror or error}") from None
-    except (ValueError, EOFError, AttributeError, zipfile.BadZipFile, RuntimeError) as error:
-        raise InvalidSetting(f"{file} is not a saved network: {error}") from None
 
 
 def regressor_of(arrays: Mapping[str, np.ndarray], place: str) -> Regressor:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pin_metaik.files import Error, read_text
+from pin_metaik.files import Error, plain_values, read_text
 from pin_metaik.lookup import need
 
 
@@ -25,9 +25,10 @@ def read_yaml(path: Path, error: Error) -> Any:
 
     text = read_text(path, error)
     try:
-        return yaml.safe_load(text)
+        content = yaml.safe_load(text)
     except (yaml.YAMLError, ValueError, RecursionError) as reason:
         raise error(f"{path} is not YAML: {' '.join(str(reason).split())}") from None
+    return plain_values(content, len(text), path, error, "YAML")
 
 
 def number(mapping: Mapping[str, Any], key: str, place: str, error: Error) -> float:

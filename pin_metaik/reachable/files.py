@@ -12,10 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.files import read_arrays
 from pin_metaik.ik import IKStatus
 from pin_metaik.lookup import need
 from pin_metaik.output import writable
 
+KIND = "a map that Reachability.save has written"
 STATUSES = (None, *IKStatus)
 """What the numbers of a map's status mean; 0: not looked at."""
 
@@ -68,8 +70,8 @@ def read_map(path: str | Path) -> Arrays:
     chosen = format_of(path)
     try:
         return chosen.read(Path(path))
-    except (OSError, ValueError, KeyError, EOFError, TypeError) as error:
-        raise InvalidSetting(f"{path} is not a map that Reachability.save has written: {error}") from None
+    except (OSError, ValueError, KeyError, EOFError, TypeError, OverflowError) as error:
+        raise InvalidSetting(f"{path} is not {KIND}: {error}") from None
 
 
 def _write_npz(path: Path, arrays: Arrays) -> None:
@@ -78,8 +80,7 @@ def _write_npz(path: Path, arrays: Arrays) -> None:
 
 
 def _read_npz(path: Path) -> Arrays:
-    with np.load(path, allow_pickle=False) as file:
-        return dict(file)
+    return read_arrays(path, InvalidSetting, KIND)
 
 
 def _write_parquet(path: Path, arrays: Arrays) -> None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.files import read_json
+from pin_metaik.output import replace_text, replaced
 
 QUESTION = "question.json"
 
@@ -31,7 +32,7 @@ class Kept:
         path, question = folder / QUESTION, {"digest": digest}
         if path.exists() and read_json(path, InvalidSetting) != question:
             raise InvalidSetting(f"{folder} holds the map of another question: choose another folder")
-        path.write_text(json.dumps(question) + "\n", encoding="utf-8")
+        replace_text(path, json.dumps(question) + "\n")
 
     def _path(self, number: int) -> Path:
         return self._folder / f"part_{number:06d}.npz"
@@ -48,7 +49,5 @@ class Kept:
     def write(self, number: int, answer: Answer) -> None:
         """Keep a part, as a whole or not at all."""
         path = self._path(number)
-        partial = path.with_suffix(".partial")
-        with partial.open("wb") as file:
+        with replaced(path) as partial, partial.open("wb") as file:
             np.savez_compressed(file, status=answer[0], manipulability=answer[1])
-        partial.replace(path)

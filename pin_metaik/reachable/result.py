@@ -100,7 +100,7 @@ class Reachability:
                 (a, b, c),
                 float(arrays["seconds"]),
             )
-        except (ValueError, KeyError, TypeError) as error:
+        except (ValueError, KeyError, TypeError, OverflowError) as error:
             raise InvalidSetting(f"{path} is not a map that Reachability.save has written: {error}") from None
 
     def at(self, xyz: ArrayLike) -> float:

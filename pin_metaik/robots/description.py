@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import re
 import tempfile
 import xml.etree.ElementTree as ET
 from collections import Counter
@@ -14,6 +16,7 @@ from weakref import WeakKeyDictionary
 
 import pinocchio as pin
 
+from pin_metaik import ply
 from pin_metaik.arguments import checked, checked_as
 from pin_metaik.errors import InvalidModel
 from pin_metaik.optimize.settings import one_of
@@ -157,6 +160,7 @@ class Description:
         shaped, counts = shapes_of(tree, shapes)
         text = ET.tostring(shaped, encoding="unicode")
         folders = [str(folder) for folder in (self.source or Path("here")).absolute().parents]
+        _check_ply(tree, folders)
         with caught_prints() as prints:
             try:
                 geometry = pin.buildGeomFromUrdfString(model, text, KINDS[shapes], package_dirs=folders)
@@ -178,7 +182,8 @@ class Description:
         with self._file() as path, caught_prints() as prints:
             try:
                 model = pin.buildModelFromMJCF(path)
-            except (ValueError, RuntimeError) as error:
+                _ = list(model.names), [frame.name for frame in model.frames]  # ValueError: not text
+            except (ValueError, RuntimeError, LookupError) as error:
                 why = (prints() or explain(error)).replace(path, self.what)
                 raise InvalidModel(f"{self.what} is not MJCF that can be read: {why}") from None
             printed = list(filter(None, [prints()]))
@@ -192,7 +197,7 @@ class Description:
         with self._file() as path, caught_prints():
             try:
                 return pin.buildGeomFromMJCF(model, path, KINDS[shapes])
-            except (ValueError, RuntimeError) as error:
+            except (ValueError, RuntimeError, LookupError) as error:
                 raise InvalidModel(f"the geometry of {self.what} cannot be loaded: {explain(error)}") from None
 
     @contextmanager
@@ -214,3 +219,17 @@ _MADE_FROM: WeakKeyDictionary[pin.Model, Description] = WeakKeyDictionary()
 def description_of(model: pin.Model) -> Description | None:
     """The source of a model, or None if it is not one of ``Description.model``."""
     return _MADE_FROM.get(model)
+
+
+def _check_ply(tree: ET.Element, folders: list[str]) -> None:
+    """Read meshes in PLY, where they may be, before Pinocchio does: a damaged one would end the process.
+
+    Raises:
+        InvalidModel: One cannot be read.
+    """
+    folders = [*folders, *os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep)]
+    for name in {mesh.get("filename", "") for mesh in tree.iter("mesh")}:
+        if name.lower().endswith(ply.SUFFIX):
+            tail = re.sub(r"^\w+://", "", name)
+            for path in filter(Path.is_file, (Path(folder, tail) for folder in folders)):
+                ply.read_ply(path, InvalidModel)

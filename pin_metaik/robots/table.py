@@ -46,6 +46,7 @@ ANGLES: dict[str, Callable[[float], float]] = {"rad": float, "deg": radians}
 
 _TOP = ("name", "convention", "length", "angle", "joint")
 _TOP_OPTIONAL = ("description", "source", "parameters", "base", "tool")
+LARGEST = 1e9  # of numbers in a table, in its units
 _JOINT = ("a", "alpha")
 _JOINT_OPTIONAL = ("name", "type", "d", "theta", "offset", "limits", "continuous", "velocity", "effort")
 
@@ -188,8 +189,9 @@ class _Reader:
             return -self.parameters[name] if value.startswith("-") else self.parameters[name]
         if isinstance(value, bool) or not isinstance(value, Real):
             raise InvalidTable(f"{place} = {value!r} is not a number")
-        if not isfinite(value):
-            raise InvalidTable(f"{place} = {value} is not finite")
+        if not -LARGEST <= float(value) <= LARGEST:
+            wrong = f"is beyond {LARGEST:g}" if isfinite(value) else "is not finite"
+            raise InvalidTable(f"{place} = {value} {wrong}")
         return float(value)
 
     def numbers(self, value: object, count: int, place: str) -> list[float]:

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from pin_metaik.compare.folder.reading import entries
-from pin_metaik.compare.folder.store import replace_text
 from pin_metaik.compare.methods.cost import FK_WITH_JACOBIAN
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.files import read_json
+from pin_metaik.output import replace_text
 
 FILE = "environment.json"
 KEYS = ("date", "command", "processor", "cores", "system", "python", "packages", "kernel_evaluations")

@@ -90,6 +90,7 @@ class Manifest:
         content = entries(values, place, [name for name in known if name not in LATER], LATER)
         inner = [one.name for one in fields(CaseEntry)]
         try:
+            _inside(entries(content.get("files", {}), "files", (), content.get("files", {})))
             cases = {
                 name: CaseEntry(**entries(case, f"case {name!r}", inner))
                 for name, case in entries(content["cases"], "cases", (), content["cases"]).items()
@@ -141,6 +142,13 @@ class Manifest:
                 raise InvalidSetting(
                     f"{where} holds a comparison with {getattr(before, name)} {name}: ask for as many, or more"
                 )
+
+
+def _inside(files: dict[str, Any]) -> None:
+    """Make sure that paths lead nowhere but into the folder."""
+    for name, path in files.items():
+        if not isinstance(path, str) or Path(path).is_absolute() or ".." in Path(path).parts:
+            raise InvalidSetting(f"files: {name!r} is kept in the folder, not at {path!r}")
 
 
 def _specs(asked: Iterable[str | Case | Method]) -> list[str]:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from pin_metaik.compare.trials.suite import Suite
 from pin_metaik.errors import InvalidSetting
+from pin_metaik.output import replaced
 from pin_metaik.robots import Robot, load_robot
 from pin_metaik.robots.library import catalogue, example_robots
 
@@ -42,7 +43,8 @@ def copy_robots(folder: Path, suite: Suite) -> dict[str, str]:
         if path.exists() and path.read_bytes() != content:
             raise InvalidSetting(f"{folder} has rows of another {name!r}, kept in {path}: choose another folder")
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content)
+        with replaced(path) as partial:
+            partial.write_bytes(content)
         if worlds:
             _copy_meshes(robot, path.parent)
         copied[name] = path.relative_to(folder).as_posix()

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from pin_metaik.compare.folder.manifest import MANIFEST, Manifest
 from pin_metaik.compare.trials.trial import Trial
-from pin_metaik.errors import InvalidSetting
-from pin_metaik.files import read_json
+from pin_metaik.errors import CannotWrite, InvalidSetting
+from pin_metaik.files import json_values, read_json
 from pin_metaik.lookup import need
+from pin_metaik.output import replace_text, replaced
 
 ROWS, PARQUET = "rows.jsonl", "rows.parquet"
 
@@ -65,8 +67,8 @@ def read_rows(folder: Path) -> list[Trial]:
     rows: dict[tuple[Any, ...], Trial] = {}
     for number, line in enumerate(lines, start=1):
         try:
-            trial = Trial.from_row(json.loads(line))
-        except (ValueError, TypeError, KeyError):
+            trial = Trial.from_row(json_values(line, f"line {number}", InvalidSetting))
+        except (InvalidSetting, TypeError):  # TypeError: a vector that is none
             raise InvalidSetting(f"line {number} of {path} is no row: take it out to go on") from None
         rows.setdefault(trial.key, trial)
     return list(rows.values())
@@ -91,9 +93,20 @@ class Appender:
         self._file.close()
 
     def add(self, trials: Iterable[Trial]) -> None:
-        """Append rows in one write."""
+        """Append rows, all of them or none.
+
+        Raises:
+            CannotWrite: There is no room for them, or the file is gone.
+        """
         lines = (json.dumps(trial.row(), allow_nan=False, separators=(",", ":")) for trial in trials)
-        self._file.write("".join(f"{line}\n" for line in lines).encode())
+        left = memoryview("".join(f"{line}\n" for line in lines).encode())
+        before = os.fstat(self._file.fileno()).st_size
+        try:
+            while left:  # a disk that is nearly full takes a part without a word
+                left = left[self._file.write(left) :]
+        except OSError as error:
+            self._file.truncate(before)
+            raise CannotWrite(f"cannot write {self._path}: {error.strerror}; what is there is whole") from None
 
 
 def write_parquet(folder: Path, trials: Iterable[Trial]) -> Path:
@@ -115,13 +128,6 @@ def write_parquet(folder: Path, trials: Iterable[Trial]) -> Path:
     }  # fmt: skip
     rows = [trial.row() for trial in sorted(trials, key=lambda trial: trial.key)]
     path = folder / PARQUET
-    partial = path.with_suffix(".partial")
-    parquet.write_table(pa.Table.from_pylist(rows, pa.schema(list(types.items()))), partial)
-    return partial.replace(path)
-
-
-def replace_text(path: Path, text: str) -> None:
-    """Write a file as a whole or not at all."""
-    partial = path.with_suffix(".partial")
-    partial.write_text(text, encoding="utf-8")
-    partial.replace(path)
+    with replaced(path) as partial:
+        parquet.write_table(pa.Table.from_pylist(rows, pa.schema(list(types.items()))), partial)
+    return path

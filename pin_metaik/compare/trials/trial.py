@@ -23,6 +23,7 @@ CURVE = np.geomspace(0.005, 1.0, 32)  # shares of the budget at which a row keep
 TIMES = ("seconds",)  # fields that differ between runs
 
 
+@checked
 @dataclass(frozen=True)
 class Trial:
     """A row of a comparison.

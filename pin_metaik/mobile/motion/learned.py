@@ -17,9 +17,10 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidSetting, MetaIKError
+from pin_metaik.files import read_arrays
 from pin_metaik.interrupts import wrapped
 from pin_metaik.learn import OutsideTraining, Regressor, Trainer, fit
-from pin_metaik.learn.files import arrays_of, network_file, numbers, read_arrays, regressor_of, save_arrays
+from pin_metaik.learn.files import arrays_of, network_file, numbers, regressor_of, save_arrays
 from pin_metaik.lookup import lookup
 from pin_metaik.mobile.motion.turn import lead_time
 from pin_metaik.mobile.motion.turn_data import coarse_grid, judging_points
@@ -266,7 +267,7 @@ def load_turn(file: str | Path) -> LearnedTurn:
     Raises:
         InvalidSetting: The file is missing, or is none of these.
     """
-    arrays = read_arrays(Path(file))
+    arrays = read_arrays(Path(file), InvalidSetting, "a saved turn")
     if missing := [key for key in ("robot", "limits", "design", "range") if key not in arrays]:
         raise InvalidSetting(f"{file} is not a saved turn: it has no {', '.join(missing)}")
     regressor = regressor_of(arrays, str(file))

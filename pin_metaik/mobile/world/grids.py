@@ -17,6 +17,7 @@ from shapely import affinity
 from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry
+from pin_metaik.files import read_array
 from pin_metaik.mobile.world.ros_maps import OCCUPIED, read_ros_map
 from pin_metaik.optimize.settings import one_of, whole
 
@@ -147,7 +148,7 @@ def read_grid(
     blocks: Unknown = "blocked" if _blocks(unknown, unknown_blocks) else "free"
     match path.suffix.lower():
         case ".npy":
-            values = _read_npy(path)
+            values = read_array(path, InvalidGeometry, "an occupancy grid")
             width = 1.0 if resolution is None else resolution
             return grid_of(values, threshold=threshold or 0.0, unknown=blocks, resolution=width)
         case ".yaml" | ".yml":
@@ -162,18 +163,6 @@ def read_grid(
 def _blocks(unknown: Unknown, unknown_blocks: bool | None) -> bool:
     one_of("unknown", unknown, Unknown)
     return unknown == "blocked" if unknown_blocks is None else bool(unknown_blocks)
-
-
-def _read_npy(path: Path) -> NDArray[np.generic]:
-    try:
-        values = np.load(path, allow_pickle=False)
-    except OSError as error:
-        raise InvalidGeometry(f"cannot read {path}: {error.strerror or error}") from None
-    except Exception as error:  # numpy reads the header as Python, with Python's errors
-        raise InvalidGeometry(f"{path} is not an occupancy grid: {error}") from None
-    if not isinstance(values, np.ndarray):
-        raise InvalidGeometry(f"{path} is not an occupancy grid: it holds several arrays")
-    return values
 
 
 def _outlined(occupied: NDArray[np.bool_]) -> NDArray[np.object_]:

@@ -1,0 +1,198 @@
+"""Odd files, and odd command lines, for everything that reads: a result or an error of ours, and nothing else.
+
+    python benchmarks/fuzz.py [--inputs 100000] [--slow 10000] [--seed 0] [--only NAME] [--kept FILE] [--out PAGE]
+
+Good files are changed as trees and as bytes (see fuzz_inputs.py), and read in processes that can die. A fault is an
+exception outside the family of ``MetaIKError``, the end of the process, a call that takes longer than 5 s, and memory
+above 1 GiB beyond what the process has when it begins.
+
+With ``--kept`` each reader is written to a file when it is done, and not done again while the sources are the same.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import os
+import tempfile
+import traceback
+import warnings
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import numpy as np
+from apart import Hangs, alarm, apart, seconds_of
+from fuzz_readers import Reader, readers
+from proof_soundness import sources
+from rich.progress import track
+from sections import conditions
+
+import pin_metaik as mik
+
+LATE = 5.0  # s; a call that takes longer hangs
+ROOM = 1 << 30  # bytes that reading may take
+SHARE = 2_000  # inputs that one child reads at most
+LONGEST = 2_000  # characters of a message
+
+
+@dataclass
+class Counts:
+    """What came of a reader's inputs.
+
+    Attributes:
+        inputs: How many.
+        read: Of them, read.
+        refused: Refused with an error of ours.
+        faults: How often each kind of fault, by its words; what is in parentheses is the number of an input.
+        longest: Longest time, s.
+    """
+
+    inputs: int = 0
+    read: int = 0
+    refused: int = 0
+    faults: dict[str, int] = field(default_factory=dict)
+    longest: float = 0.0
+
+
+Outcome = tuple[str, float]
+"""What came of an input, "read", "refused" or a fault in words, and the time it took, s."""
+
+
+def fuzz(reader: Reader, numbers: range) -> Counts:
+    """Let a reader read its odd inputs of these numbers."""
+    counts, faults, first = Counts(), Counter[str](), dict[str, int]()
+    for start in range(numbers.start, numbers.stop, SHARE):
+        part = range(start, min(start + SHARE, numbers.stop))
+        with tempfile.TemporaryDirectory() as folder:
+            reader.beside(Path(folder))
+            path = Path(folder, reader.file)
+            outcomes = apart(
+                len(part),
+                lambda i, path=path, part=part: _outcome(reader, path, part[i]),  # type: ignore[misc]
+                lambda _, how: (how, 0.0),
+                2.0 * LATE,
+                ROOM,
+            )
+        for number, (what, seconds) in zip(part, outcomes, strict=True):
+            counts.inputs += 1
+            counts.longest = max(counts.longest, seconds)
+            if what == "read":
+                counts.read += 1
+            elif what == "refused":
+                counts.refused += 1
+            else:
+                faults[what] += 1
+                first.setdefault(what, number)
+    counts.faults = {f"{what} (input {first[what]})": count for what, count in faults.most_common()}
+    return counts
+
+
+def _outcome(reader: Reader, path: Path, number: int) -> Outcome:
+    """What comes of one input, in this process."""
+    path.write_bytes(reader.odd(number))
+    os.chdir(path.parent)
+    return seconds_of(lambda: _what(reader, path))
+
+
+def _what(reader: Reader, path: Path) -> str:
+    try:
+        with alarm(LATE), warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            reader.read(path)
+    except mik.MetaIKError as error:
+        return "refused" if _printable(error) else f"{type(error).__name__} of {len(str(error)):,} characters"
+    except Hangs as error:
+        return f"takes longer than {LATE:g} s at {_place(error)}"
+    except Exception as error:
+        return f"{type(error).__name__} at {_place(error)}: {' '.join(str(error).split())[:80]}"
+    return "read"
+
+
+def _printable(error: mik.MetaIKError) -> bool:
+    """Whether a message is one that a terminal takes, and somebody reads."""
+    return len(str(error)) < LONGEST and str(error).isprintable()
+
+
+def _place(error: BaseException) -> str:
+    """The last line of the package's own in a traceback."""
+    lines = traceback.extract_tb(error.__traceback__)
+    ours = [line for line in lines if "/pin_metaik/" in line.filename]
+    last = (ours or list(lines))[-1]
+    return f"{Path(last.filename).name}:{last.lineno}"
+
+
+def all_counted(asked: dict[str, int], seed: int, kept: Path | None) -> dict[str, Counts]:
+    """Counts of each reader, less those that a file has already."""
+    of = sources()
+    lines = kept.read_text(encoding="utf-8").splitlines() if kept is not None and kept.exists() else []
+    known = {
+        (name, count, first): Counts(**counts) for by, name, count, first, counts in map(json.loads, lines) if by == of
+    }
+    every = readers()
+    for name, count in track(asked.items(), "readers", transient=True):
+        if (name, count, seed) not in known:
+            known[name, count, seed] = counts = fuzz(every[name], range(seed, seed + count))
+            print(f"{name}: {counts}", flush=True)
+            if kept is not None:
+                with kept.open("a", encoding="utf-8") as file:
+                    file.write(json.dumps([of, name, count, seed, asdict(counts)]) + "\n")
+    return {name: known[name, count, seed] for name, count in asked.items()}
+
+
+def page(counts: dict[str, Counts]) -> Iterator[str]:
+    """The page, paragraph by paragraph."""
+    yield "# Odd files and command lines"
+    yield conditions()
+    yield (
+        "*Refused*: an error of the family of `MetaIKError`, in words that can be printed. *Faults*: all other "
+        f"exceptions, processes that end, calls of more than {LATE:g} s, more than 1 GiB of memory."
+    )
+    table = ["| what is read | inputs | read | refused | faults | longest, s |", "|---|---:|---:|---:|---:|---:|"]
+    for name, c in counts.items():
+        cells = f"{c.inputs:,} | {c.read:,} | {c.refused:,} | {sum(c.faults.values()):,} | {c.longest:.2f}"
+        table.append(f"| {name} | {cells} |")
+    total = [sum(getattr(c, key) for c in counts.values()) for key in ("inputs", "read", "refused")]
+    faults = sum(sum(c.faults.values()) for c in counts.values())
+    table.append(f"| all | {' | '.join(f'{n:,}' for n in (*total, faults))} | |")
+    yield "\n".join(table)
+    said = [f"- {name}: {count} x `{what}`" for name, c in counts.items() for what, count in c.faults.items()]
+    if said:
+        yield "\n".join(said)
+
+
+def main() -> None:
+    """Read, count, and write the page."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--inputs", type=int, default=100_000, help="of each reader that takes a millisecond or so")
+    parser.add_argument("--slow", type=int, default=10_000, help="of each other one")
+    parser.add_argument("--seed", type=int, default=0, help="number of the first input")
+    parser.add_argument("--only", default="", help="readers whose name holds this")
+    parser.add_argument("--kept", type=Path, help="file that finished readers are kept in")
+    parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".md"))
+    given = parser.parse_args()
+    out, kept = given.out.absolute(), given.kept and given.kept.absolute()
+    with elsewhere():
+        asked = {
+            name: given.inputs if one.fast else given.slow for name, one in readers().items() if given.only in name
+        }
+        counts = all_counted(asked, given.seed, kept)
+    out.write_text("\n\n".join(page(counts)) + "\n", encoding="utf-8")
+
+
+@contextlib.contextmanager
+def elsewhere() -> Iterator[None]:
+    """In a folder of its own."""
+    before = Path.cwd()
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        try:
+            yield
+        finally:
+            os.chdir(before)
+
+
+if __name__ == "__main__":
+    main()
