@@ -18,7 +18,7 @@ from pin_metaik.compare.report.write import need_figures
 from pin_metaik.compare.results.results import Results, read_results
 from pin_metaik.compare.results.standing import headline
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.output import replace_text, writable
+from pin_metaik.output import writable
 
 TITLE = "Inverse kinematics where it is hard"
 STEM = "report"

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from pin_metaik.compare.folder.store import replace_text
 from pin_metaik.compare.report.html import html
 from pin_metaik.compare.report.parts import Section
 from pin_metaik.compare.report.write import write
+from pin_metaik.output import replace_text
 
 
 def write_page(
