@@ -50,9 +50,8 @@ def main() -> int:
     options = parser.parse_args()
     from playwright.sync_api import sync_playwright
 
-    pages = [
-        page for page in sorted(options.site.rglob("*.html")) if options.word in str(page.relative_to(options.site))
-    ]
+    every = [page.relative_to(options.site) for page in sorted(options.site.rglob("*.html"))]
+    pages = [page for page in every if options.word in str(page) and page.parts[0] != "_static"]
     options.out.mkdir(parents=True, exist_ok=True)
     server, address = served(options.site)
     strange: list[str] = []
@@ -68,9 +67,10 @@ def main() -> int:
                     strange.append(request.url) if not request.url.startswith((address, "data:", "blob:")) else None
                 ),
             )
-            for page in pages:
-                place = page.relative_to(options.site)
-                tab.goto(f"{address}/{place}")
+            for place in pages:
+                answer = tab.goto(f"{address}/{place}")
+                if answer is None or not answer.ok:
+                    raise SystemExit(f"{place} cannot be opened")
                 tall = min(TALLEST, int(tab.evaluate("document.documentElement.scrollHeight")))
                 name = f"{'_'.join(place.with_suffix('').parts)}_{scheme}.png"
                 tab.screenshot(
