@@ -14,7 +14,7 @@ U = TypeVar("U")
 
 
 class Interrupted(KeyboardInterrupt):
-    """A ``KeyboardInterrupt`` whose ``result`` is the best that was found until Ctrl-C.
+    """Ctrl-C, with what was found until then: for whoever wants it; to everybody else it is a ``KeyboardInterrupt``.
 
     Attributes:
         result: The result of the call as if its search had ended there; it is marked as interrupted.
