@@ -89,7 +89,7 @@ def test_the_picture_of_the_readme_shows_what_is_solved_now() -> None:
 
 
 def test_the_coverage_page_has_every_robot_that_loads_by_name() -> None:
-    page = (ROOT / "benchmarks" / "coverage.md").read_text(encoding="utf-8")
+    page = (ROOT / "benchmarks" / "robot_coverage.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (\S+) \| (?:catalogue|example-robot-data) ", page, re.MULTILINE)
     assert rows == [robot.name for robot in mik.robot_names()]
 
