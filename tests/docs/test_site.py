@@ -82,10 +82,9 @@ def test_the_picture_of_the_readme_shows_what_is_solved_now() -> None:
     chain, world = mik.Chain(robot, robot.frame), mik.CollisionWorld(robot, load_scene("shelf"))
     target = pin.SE3(pin.utils.rotate("y", np.pi / 2), np.array([0.68, -0.25, 0.6]))
     solved = [mik.solve_ik(chain, target).q, mik.solve_ik(chain, target, world=world).q]
-    shown = json.loads(Image.open(ROOT / "docs" / "images" / "shelf.png").info["configurations"])
-    np.testing.assert_allclose(
-        shown, solved, atol=1e-4
-    )  # rad: what no eye sees; python docs/pictures.py shelf draws it
+    with Image.open(ROOT / "docs" / "images" / "shelf.png") as picture:  # python docs/pictures.py shelf draws it
+        shown = json.loads(picture.info["configurations"])
+    np.testing.assert_allclose(shown, solved, atol=1e-4)  # rad, what no eye sees
 
 
 def test_the_coverage_page_has_every_robot_that_loads_by_name() -> None:
@@ -96,13 +95,10 @@ def test_the_coverage_page_has_every_robot_that_loads_by_name() -> None:
 
 def test_the_drawing_of_the_layers_has_every_room_of_the_contracts() -> None:
     whole, *others = drawings(ROOT / "pyproject.toml")
-    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
-        "contracts"
-    ]
-    assert len(others) + 1 == sum(each["type"] == "layers" for each in contracts)
-    rooms = {
-        path.stem for path in (ROOT / "pin_metaik").iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()
-    }
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert len(others) + 1 == sum(each["type"] == "layers" for each in project["tool"]["importlinter"]["contracts"])
+    inside = (ROOT / "pin_metaik").iterdir()
+    rooms = {path.stem for path in inside if path.suffix == ".py" or (path / "__init__.py").exists()}
     assert {room for row in whole.rows for room in row} == rooms - {"__init__", "__main__"}
     for room in ("ik", "kinematics", "compiled"):
         assert f">{room}</text>" in whole.svg()
