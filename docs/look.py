@@ -27,6 +27,7 @@ SEARCHED = {
 """Words, and a page that the search must find for each."""
 FOUND = "#search-results li a"
 WIDTH, HEIGHT, TALLEST = 1280, 900, 2600  # pixels
+PATIENCE = 180_000  # ms
 
 
 def served(folder: Path) -> tuple[http.server.ThreadingHTTPServer, str]:
@@ -60,6 +61,7 @@ def main() -> int:
         browser = play.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
         for scheme in ("light", "dark"):
             context = browser.new_context(color_scheme=scheme, viewport={"width": WIDTH, "height": HEIGHT})
+            context.set_default_timeout(PATIENCE)
             tab = context.new_page()
             tab.on(
                 "request",
@@ -80,7 +82,7 @@ def main() -> int:
         tab = browser.new_page()
         for words, wanted in SEARCHED.items():
             tab.goto(f"{address}/search.html?q={words.replace(' ', '+')}")
-            tab.wait_for_selector(FOUND, timeout=20_000)
+            tab.wait_for_selector(FOUND, timeout=PATIENCE)
             tab.wait_for_timeout(500)
             found = tab.eval_on_selector_all(FOUND, "links => links.map(link => link.getAttribute('href'))")
             place = next((i for i, link in enumerate(found, start=1) if wanted in link), None)

@@ -82,6 +82,9 @@ def test_the_picture_of_the_readme_shows_what_is_solved_now() -> None:
     chain, world = mik.Chain(robot, robot.frame), mik.CollisionWorld(robot, load_scene("shelf"))
     target = pin.SE3(pin.utils.rotate("y", np.pi / 2), np.array([0.68, -0.25, 0.6]))
     solved = [mik.solve_ik(chain, target).q, mik.solve_ik(chain, target, world=world).q]
+    names = [contact[:2] for contact in world.pairs_in_collision(solved[0])]
+    assert names == [("panda_link5", "high_board")]  # "its forearm collides"
+    assert not world.in_collision(solved[1])
     with Image.open(ROOT / "docs" / "images" / "shelf.png") as picture:  # python docs/pictures.py shelf draws it
         shown = json.loads(picture.info["configurations"])
     np.testing.assert_allclose(shown, solved, atol=1e-4)  # rad, what no eye sees
