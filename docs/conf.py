@@ -33,6 +33,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "docs.site.api",
     "docs.site.entrance",
+    "docs.site.examples",
     "docs.site.layers",
     "docs.site.mathml",
 ]

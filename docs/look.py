@@ -27,6 +27,7 @@ SEARCHED = {
 """Words, and a page that the search must find for each."""
 FOUND = "#search-results li a"
 WIDTH, HEIGHT, TALLEST = 1280, 900, 2600  # pixels
+PATIENCE = 180_000  # ms
 
 
 def served(folder: Path) -> tuple[http.server.ThreadingHTTPServer, str]:
@@ -50,9 +51,8 @@ def main() -> int:
     options = parser.parse_args()
     from playwright.sync_api import sync_playwright
 
-    pages = [
-        page for page in sorted(options.site.rglob("*.html")) if options.word in str(page.relative_to(options.site))
-    ]
+    every = [page.relative_to(options.site) for page in sorted(options.site.rglob("*.html"))]
+    pages = [page for page in every if options.word in str(page) and page.parts[0] != "_static"]
     options.out.mkdir(parents=True, exist_ok=True)
     server, address = served(options.site)
     strange: list[str] = []
@@ -61,6 +61,7 @@ def main() -> int:
         browser = play.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
         for scheme in ("light", "dark"):
             context = browser.new_context(color_scheme=scheme, viewport={"width": WIDTH, "height": HEIGHT})
+            context.set_default_timeout(PATIENCE)
             tab = context.new_page()
             tab.on(
                 "request",
@@ -68,9 +69,10 @@ def main() -> int:
                     strange.append(request.url) if not request.url.startswith((address, "data:", "blob:")) else None
                 ),
             )
-            for page in pages:
-                place = page.relative_to(options.site)
-                tab.goto(f"{address}/{place}")
+            for place in pages:
+                answer = tab.goto(f"{address}/{place}")
+                if answer is None or not answer.ok:
+                    raise SystemExit(f"{place} cannot be opened")
                 tall = min(TALLEST, int(tab.evaluate("document.documentElement.scrollHeight")))
                 name = f"{'_'.join(place.with_suffix('').parts)}_{scheme}.png"
                 tab.screenshot(
@@ -80,7 +82,7 @@ def main() -> int:
         tab = browser.new_page()
         for words, wanted in SEARCHED.items():
             tab.goto(f"{address}/search.html?q={words.replace(' ', '+')}")
-            tab.wait_for_selector(FOUND, timeout=20_000)
+            tab.wait_for_selector(FOUND, timeout=PATIENCE)
             tab.wait_for_timeout(500)
             found = tab.eval_on_selector_all(FOUND, "links => links.map(link => link.getAttribute('href'))")
             place = next((i for i, link in enumerate(found, start=1) if wanted in link), None)

@@ -24,7 +24,7 @@ ROOT = Path(__file__).parents[1]
 IMAGES = ROOT / "docs" / "images"
 SAME = 0.04  # of the range of brightness, root mean square of the difference of thumbnails
 THUMBNAIL = 96, 64  # pixels
-WAIT = 180.0  # s for a browser
+WAIT = 1200.0  # s for a browser that draws without a graphics card
 
 SINGULAR = """[workspace]
 x = [0, 0]
@@ -69,8 +69,9 @@ def shelf(file: Path) -> None:
         try:
             run.communicate(timeout=WAIT)
         finally:
-            looks.terminate()
-            looks.wait()
+            for process in (run, looks):
+                process.terminate()
+                process.wait()
 
 
 def example(number: str) -> Callable[[Path], None]:

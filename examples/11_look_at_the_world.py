@@ -54,7 +54,7 @@ def main() -> None:
 def panel(viewer: WorldViewer, q: np.ndarray, world: mik.CollisionWorld) -> np.ndarray:
     """What the first browser that looks sees of the robot at q, with a title: red, green and blue (h, w, 3)."""
     viewer.display(q)
-    image = Image.fromarray(viewer.picture(720, 600, timeout=120.0))
+    image = Image.fromarray(viewer.picture(720, 600, timeout=600.0))
     title = "collides" if world.in_collision(q) else "free"
     ImageDraw.Draw(image).text((24, 16), title, fill=(40, 40, 40), font=ImageFont.load_default(36))
     return np.asarray(image)

@@ -1,4 +1,4 @@
-"""Global inverse kinematics for Pinocchio: metaheuristics find the region, a refinement finds the solution.
+"""Global inverse kinematics for Pinocchio that decides: it solves what is reachable, and proves what is unreachable.
 
 import pin_metaik as mik
 

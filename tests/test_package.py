@@ -87,7 +87,7 @@ def test_the_extra_all_holds_every_other_that_installs_everywhere() -> None:
     extras = project["optional-dependencies"]
     (everything,) = extras["all"]
     named = set(everything.removeprefix("pin-metaik[").removesuffix("]").split(","))
-    assert named == set(extras) - {"all", "dev", "tracik", "roboticstoolbox", "branches", "ompl"}
+    assert named == set(extras) - {"all", "dev", "docs", "tracik", "roboticstoolbox", "branches", "ompl"}
 
 
 def test_the_citation_and_the_recipe_are_of_this_version() -> None:

@@ -37,8 +37,8 @@ def names(module: ModuleType) -> list[str]:
     """The public names that a module's page has."""
     listed = getattr(module, "__all__", None)
     if listed is None:
-        listed = [name for name, value in vars(module).items() if getattr(value, "__module__", "") == module.__name__]
-        listed = [name for name in listed if not name.startswith("_")]
+        listed = [name for name, value in vars(module).items() if inspect.isclass(value) and name[0].isupper()]
+        listed = [name for name in listed if getattr(module, name).__module__ == module.__name__]
     top = importlib.import_module("pin_metaik")
     own = [name for name in listed if module is top or getattr(top, name, None) is not getattr(module, name)]
     return [name for name in own if not inspect.ismodule(getattr(module, name))]

@@ -15,7 +15,7 @@ from sphinx_gallery.scrapers import figure_rst
 
 ROOT = Path(__file__).parents[2]
 STAGE = ROOT / "build" / "examples"
-SMALLER = {"12_screen_grasps": ["12"]}
+SMALLER = {"12_screen_grasps": ["120"]}
 """Arguments before the picture with which an example is quick."""
 STILLS = {"11_look_at_the_world": ROOT / "docs" / "images" / "shelf.png"}
 """What examples show in a browser, as ``docs/pictures.py`` has taken it."""
@@ -59,3 +59,17 @@ def pictures(_block: Any, variables: dict[str, Any], conf: dict[str, Any]) -> st
     shown = next(variables["image_path_iterator"])
     shutil.move(written, shown)
     return str(figure_rst([shown], conf["src_dir"]))
+
+
+LINK = re.compile(r"\]\((?:\.\./)+examples/(\d\d_\w+)\.py\)")
+
+
+def _to_the_gallery(_app: Any, _page: str, source: list[str]) -> None:
+    """Let links to examples lead to their pages in the gallery: in the repository they lead to the files."""
+    source[0] = LINK.sub(r"](/docs/gallery/\1.rst)", source[0])
+
+
+def setup(app: Any) -> dict[str, bool]:
+    """Change links as pages are read."""
+    app.connect("source-read", _to_the_gallery)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -47,13 +47,16 @@ class Drawing:
 
 
 def drawings(project: Path) -> list[Drawing]:
-    """Those of all contracts about layers in a pyproject.toml."""
+    """Those of all contracts about layers in a pyproject.toml, with the rooms that are there."""
     contracts = tomllib.loads(project.read_text(encoding="utf-8"))["tool"]["importlinter"]["contracts"]
-    return [
-        Drawing(each["name"], tuple(tuple(re.findall(r"\w+", layer)) for layer in each["layers"]))
-        for each in contracts
-        if each["type"] == "layers"
-    ]
+    made = []
+    for contract in contracts:
+        if contract["type"] == "layers":
+            folder = project.parent.joinpath(*contract["containers"][0].split("."))
+            there = {path.stem for path in folder.iterdir()}
+            rows = (tuple(room for room in re.findall(r"\w+", layer) if room in there) for layer in contract["layers"])
+            made.append(Drawing(contract["name"], tuple(row for row in rows if row)))
+    return made
 
 
 def _width(room: str) -> float:

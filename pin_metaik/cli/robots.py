@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -17,6 +18,7 @@ from pin_metaik.kinematics import Chain
 from pin_metaik.output import writable
 from pin_metaik.robots import RobotName, load_robot, robot_names, write_urdfs
 
+WIDE = 150  # columns for files and pipes, which have no width
 MANY = 9
 """Coordinates from which on little is proved unreachable; see ``solve_ik``."""
 
@@ -43,7 +45,7 @@ def robots(
     table = Table(*headings, box=None)
     for row in rows:
         table.add_row(*("yes" if value is True else "" if value is False else str(value) for value in row.values()))
-    Console().print(table)
+    Console(width=None if sys.stdout.isatty() else WIDE).print(table)
 
 
 def known(robot: RobotName) -> dict[str, object]:

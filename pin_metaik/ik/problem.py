@@ -78,7 +78,7 @@ class IKProblem:
 
     @staticmethod
     def of(chain: Chain, target: Asked, world: CollisionWorld | None = None) -> IKProblem:
-        """Match what somebody asks for to the chain's frames.
+        """Make a problem of targets, goals and wishes, each matched to a frame of the chain.
 
         Args:
             chain: The chain.
@@ -118,7 +118,7 @@ class IKProblem:
 
     @property
     def m(self) -> int:
-        """Rows of the residual: the axes of the targets that count, and what the other goals have."""
+        """Number of rows of the residual: an axis of a target that counts has one, other goals have their own."""
         return len(self.rows) + sum(self.goals.sizes)
 
     def at(self, q: ArrayLike) -> IKProblem:
@@ -139,7 +139,7 @@ class IKProblem:
 
     @property
     def loose(self) -> bool:
-        """Whether a target allows more than the default tolerance, so that aiming at its middle may be in vain."""
+        """Whether a target allows more than the default tolerance: its edge may be reachable, its middle not."""
         return any(target.loose for target in self.targets)
 
     def placed(self, x: NDArray[np.float64]) -> Placed:
@@ -252,7 +252,7 @@ class IKProblem:
 
     @property
     def refuted(self) -> Proof | None:
-        """What proves, by the limits, the links or the arm's closed form, that nothing meets the targets."""
+        """The proof, by limits, links or closed form, that no configuration meets the targets; None without one."""
         nominal = self.nominal_branches if self.proof is None else None
         return Proof.CLOSED_FORM if nominal is not None and nominal.proved else self.proof
 

@@ -88,7 +88,7 @@ class IKResult:
 
     @property
     def problem(self) -> IKProblem:
-        """What was asked."""
+        """The problem that was solved, with joints outside the chain as in ``q``."""
         return IKProblem.of(self.chain, self.target, self.world).at(self.q)
 
     @property

@@ -100,7 +100,7 @@ class Limits:
         return Box(lower, upper)
 
     def one_turn(self) -> Limits:
-        """The same limits, but no winding angle with more than the turn in the middle of its range."""
+        """The same limits, but every angle with room for several turns has only the one in the middle of its range."""
         spare = np.maximum(0.5 * (self.upper - self.lower) - np.pi, 0.0)
         wide = self.multi_turn & np.isfinite(spare)
         lower, upper = self.lower.copy(), self.upper.copy()

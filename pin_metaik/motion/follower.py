@@ -172,7 +172,7 @@ class Follower:
         return FollowerStep(after, self.v.copy(), status, position, orientation, share, stopped)
 
     def move(self, goal: ArrayLike, q: ArrayLike) -> FollowerStep:
-        """One tick towards a configuration, in the joints themselves: all begin and end to move together, as a rule.
+        """One tick towards a configuration, joint by joint; as a rule all joints begin and end together.
 
         Args:
             goal: (nq,) where to, brought inside the limits; joints outside the chain stay as they are.

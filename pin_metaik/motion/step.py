@@ -29,7 +29,7 @@ class FollowerStatus(StrEnum):
 
 @dataclass(eq=False, slots=True)
 class FollowerStep:
-    """One tick.
+    """The outcome of one control tick.
 
     Attributes:
         q: (nq,) where to be at its end.

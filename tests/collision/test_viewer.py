@@ -7,13 +7,12 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-import pin_metaik as mik
-from pin_metaik.collision import Box, Capsule, Cone, HalfSpace, Mesh, Obstacle, Sphere, load_scene, viewer
+from pin_metaik.collision import Box, Capsule, Cone, HalfSpace, Mesh, Obstacle, Sphere, viewer
 from pin_metaik.collision.drawing import surface
 from pin_metaik.collision.world import CollisionWorld
 from pin_metaik.errors import FrameNotFound, InvalidGeometry, MissingExtra
 from tests.collision.test_mesh import CORNERS
-from tests.collision.worlds import robot_of, world_of
+from tests.collision.worlds import robot_of
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "11_look_at_the_world.py"
 
@@ -105,16 +104,6 @@ def test_what_is_drawn_is_as_large_as_the_shape(shape: Box) -> None:
     vertices, _ = surface(geometry)
     np.testing.assert_allclose(vertices.max(axis=0), geometry.aabb_local.max_, atol=2e-3)
     np.testing.assert_allclose(vertices.min(axis=0), geometry.aabb_local.min_, atol=2e-3)
-
-
-def test_what_the_readme_says_of_its_picture_is_true() -> None:
-    robot, world = robot_of("panda"), world_of("panda", "shelf")
-    chain = mik.Chain(robot.model, robot.frame)
-    target = pin.SE3(pin.utils.rotate("y", np.pi / 2), np.array([0.68, -0.25, 0.6]))
-    names = [contact[:2] for contact in world.pairs_in_collision(mik.solve_ik(chain, target).q)]
-    assert names == [("panda_link5", "high_board")]  # "its forearm in the upper board"
-    assert not world.in_collision(mik.solve_ik(chain, target, world=world).q)
-    assert {obstacle.name for obstacle in load_scene("shelf")} >= {"low_board", "middle_board", "high_board"}
 
 
 def test_the_example_stays_until_it_is_interrupted_and_ends_without_a_traceback(tmp_path: Path) -> None:

@@ -36,14 +36,19 @@ def commands(document: Document) -> Iterable[Region]:
 
 
 def accepted(example: Example) -> None:
-    """Have the command line read every command, as far as running it."""
+    """Have the command line read every command of a block."""
     for line in COMMAND.finditer(example.parsed.replace("\\\n", " ")):
-        command: Any = typer.main.get_command(app)
-        words = shlex.split(line["words"])
-        context = command.make_context("pin-metaik", words)
-        while hasattr(command, "resolve_command"):
-            name, command, words = command.resolve_command(context, [*context._protected_args, *context.args])
-            context = command.make_context(name, words, parent=context)
+        read_by_the_command_line(line["words"])
+
+
+def read_by_the_command_line(line: str) -> None:
+    """Have the command line read a command, as far as running it."""
+    command: Any = typer.main.get_command(app)
+    words = shlex.split(line)
+    context = command.make_context("pin-metaik", words)
+    while hasattr(command, "resolve_command"):
+        name, command, words = command.resolve_command(context, [*context._protected_args, *context.args])
+        context = command.make_context(name, words, parent=context)
 
 
 def not_installed(package: str) -> bool:

@@ -1,6 +1,6 @@
 """Every robot that loads by name: its joints and tip, how it is solved, how fast, what is decided, and its worlds.
 
-python benchmarks/coverage.py --out benchmarks/coverage.md
+python benchmarks/robot_coverage.py --out benchmarks/robot_coverage.md
 """
 
 from __future__ import annotations
