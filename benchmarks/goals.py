@@ -1,6 +1,6 @@
 """Goals alone and in combinations: how many feasible problems are solved, how quickly, and whether the answers hold.
 
-    python benchmarks/goals.py [solved tolerances wishes] [--count 1000] [--robots panda ur5 tiago talos]
+    python benchmarks/goals.py [solved tolerances wishes] [--count 1000] [--robots panda ur5 tiago talos solo12 anymal]
 
 Every problem is met by a random configuration, at the worst place that its goal has: at the edge of a box, a cone, a
 range. An answer is verified by ``goal_cases.py``, in Pinocchio and NumPy without the package's goals. Writes the
@@ -171,7 +171,7 @@ def main() -> None:
     parser.add_argument("sections", nargs="*", choices=[[], *SECTIONS], metavar="SECTION", help=", ".join(SECTIONS))
     parser.add_argument("--count", type=int, default=1000, help="problems a row")
     parser.add_argument("--out", type=Path, default=PAGE, help="the page to write")
-    parser.add_argument("--robots", nargs="+", default=["panda", "ur5", "tiago", "talos"])
+    parser.add_argument("--robots", nargs="+", default=["panda", "ur5", "tiago", "talos", "solo12", "anymal"])
     options = parser.parse_args()
     for name in options.sections or SECTIONS:
         title, measure = SECTIONS[name]
