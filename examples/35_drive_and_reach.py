@@ -21,7 +21,7 @@ def main() -> None:
     robot = mik.load_robot("tiago", planar=True)
     chain = mik.Chain(robot, robot.frame, limits=ROOM)
     print(f"{chain.n} coordinates: {', '.join(chain.names)}")
-    world = mik.CollisionWorld(robot, [TABLE, LEG], margin=0.02)
+    world = mik.CollisionWorld(robot, [TABLE, LEG])
 
     figure = Figure(figsize=(13, 5), layout="constrained")
     here = chain.reference
@@ -36,7 +36,6 @@ def main() -> None:
         print(
             f"cup at {cup} m: {result.status}; stand at ({x:.2f}, {y:.2f}) m, turned by {np.degrees(yaw):.0f} degrees"
         )
-        print(f"  {1e3 * world.min_distance(result.q).distance:.0f} mm clear of everything")
         mik.ik.draw_arm(part, chain, result.q, np.array(cup), world)
         part.axes[0].view_init(elev=25, azim=-60)
         here = result.q
