@@ -1,6 +1,8 @@
-"""Look at a point: a list of goals is met together, and a wish uses the freedom that they leave."""
+"""Look at a point: a list of goals is met together, and a wish uses the freedom that they leave. Draws it."""
 
 import math
+import sys
+from pathlib import Path
 
 import numpy as np
 
@@ -12,6 +14,7 @@ POINT = np.array([0.6, 0.1, 0.2])  # m, in the world
 
 
 def main() -> None:
+    picture = Path(sys.argv[1] if len(sys.argv) > 1 else "look_at.png")
     chain = mik.Chain(mik.load_robot("panda"), CAMERA)
     asked = [
         goals.LookAt(CAMERA, POINT),
@@ -35,6 +38,9 @@ def main() -> None:
     with_wish = mik.solve_ik(chain, [*asked, goals.Wish(centred)])
     before, (after,) = centred.off(at), with_wish.wishes
     print(f"\noff the middle of the ranges: {before} without a wish, {after.off} with it")
+
+    mik.ik.save_arm(picture, chain, with_wish.q, POINT)
+    print(f"drawn: {picture}")
 
     # What cannot be met at once says which of the goals is missed, and by how much.
     apart = goals.Distance(CAMERA, POINT, least=2.0, most=2.5)

@@ -1,6 +1,11 @@
-"""Two hands on a tray: a frame's pose in the coordinates of another, and a centre of mass that stays over the feet."""
+"""Two hands on a tray: a frame's pose in the coordinates of another, and a centre of mass that stays over the feet.
+
+Draws it.
+"""
 
 import math
+import sys
+from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -14,6 +19,7 @@ FEET = [(-0.1, -0.15), (0.1, -0.15), (0.1, 0.15), (-0.1, 0.15)]  # m, corners ar
 
 
 def main() -> None:
+    picture = Path(sys.argv[1] if len(sys.argv) > 1 else "two_hands.png")
     chain = mik.Chain(mik.load_robot("talos"), [LEFT, RIGHT])
     print(f"{chain.n} joints move two hands")
 
@@ -40,6 +46,9 @@ def main() -> None:
     away = goals.Posture(chain.reference).off(goals.Placed(chain, result.q))
     print(f"\n{calm.status}: joints are {calm.wishes[0].off['rad']:.3f} rad from where they stood,", end=" ")
     print(f"without the wish {away['rad']:.3f} rad")
+
+    mik.ik.save_arm(picture, chain, calm.q, handle)
+    print(f"drawn: {picture}")
 
 
 if __name__ == "__main__":
