@@ -1,6 +1,6 @@
 """Goals alone and in combinations: how many feasible problems are solved, how quickly, and whether the answers hold.
 
-    python benchmarks/goals.py [solved tolerances wishes] [--count 1000] [--robots panda ur5 tiago talos]
+    python benchmarks/goals.py [solved legs tolerances wishes] [--count 1000] [--robots panda ur5 tiago talos]
 
 Every problem is met by a random configuration, at the worst place that its goal has: at the edge of a box, a cone, a
 range. An answer is verified by ``goal_cases.py``, in Pinocchio and NumPy without the package's goals. Writes the
@@ -10,7 +10,7 @@ sections named, default all, into ``goals.md``. Times are processor times of one
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from time import thread_time
 
@@ -24,6 +24,7 @@ from pin_metaik import goals
 
 PAGE = Path(__file__).with_suffix(".md")
 TITLE = "# Goals that compose"
+QUADRUPEDS = "solo12", "anymal"
 TOLERANCES = (1e-5, 1e-3, 0.02)  # m and rad
 
 
@@ -59,14 +60,23 @@ def counted(robot: Robot, makes: tuple[Make, ...], count: int) -> tuple[int, int
 
 
 def solved(options: argparse.Namespace) -> list[str]:
-    """Each goal alone, and the combinations."""
+    """Each goal alone, and the combinations, on arms."""
+    return _solved(options.robots, options.count)
+
+
+def legs(options: argparse.Namespace) -> list[str]:
+    """The same on a leg of each quadruped, three joints from trunk to foot."""
+    return _solved(QUADRUPEDS, options.count)
+
+
+def _solved(robots: Sequence[str], count: int) -> list[str]:
     lines = [
-        f"{options.count:,} feasible problems a row and robot. *Verified*: of all, those whose answer holds by the "
+        f"{count:,} feasible problems a row and robot. *Verified*: of all, those whose answer holds by the "
         "independent test. Median and 99 % of the time of a call, ms; of the evaluations, one a configuration, the "
         "median. `pose` and `position` of a chain's frame are evaluated by compiled loops, all others in Python.",
         "",
     ]
-    for name in options.robots:
+    for name in robots:
         robot = robot_of(name)
         lines += [
             f"### {name}",
@@ -78,10 +88,10 @@ def solved(options: argparse.Namespace) -> list[str]:
         ]
         sums = np.zeros(3, dtype=int)
         for kind, makes in {**ALONE, **TOGETHER}.items():
-            met, right, times, spent = counted(robot, makes, options.count)
-            sums += met, right, options.count
+            met, right, times, spent = counted(robot, makes, count)
+            sums += met, right, count
             half, late = 1e3 * np.quantile(times, [0.5, 0.99])
-            rates = f"{_percent(met, options.count)} | {_percent(right, options.count)}"
+            rates = f"{_percent(met, count)} | {_percent(right, count)}"
             lines.append(f"| {kind} | {rates} | {half:.2f} | {late:.1f} | {np.median(spent):.0f} |")
             print(name, lines[-1], flush=True)
         lines += [f"| **all** | {_percent(sums[0], sums[2])} | {_percent(sums[1], sums[2])} | | | |", ""]
@@ -160,6 +170,7 @@ def _percent(part: int, whole: int) -> str:
 
 SECTIONS: dict[str, tuple[str, Callable[[argparse.Namespace], list[str]]]] = {
     "solved": ("Alone and together", solved),
+    "legs": ("Alone and together, on legs", legs),
     "tolerances": ("Targets at the edge of a radius", tolerances),
     "wishes": ("Wishes", wishes),
 }

@@ -70,6 +70,9 @@ def inverse() -> bool:
     looking: mik.goals.Goal = mik.goals.LookAt("tool0", (1.0, 0.0, 0.0))
     looked = mik.solve_ik(chain, [poses[0].translation, looking, mik.goals.Wish(mik.goals.MidRange(0.0))])
     met: list[bool] = [outcome.met for outcome in looked.goals]
+    loops: list[mik.goals.Loop] = [mik.goals.Loop(closure) for closure in robot.loops]
+    ends: list[str] = [link for loop in loops for link in loop.ends(robot.model)]
+    print(len(ends))
     print(len(names), status.name, proof, len(every), len(batch), path.continuous, seeded.success, free.success)
     move: collision.Move = world.first_contact(q, q)
     print(choice.index, map_.share, place.pose, move.status, world.clear_between(q, q), path.reasons)

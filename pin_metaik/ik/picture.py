@@ -66,7 +66,8 @@ def draw_arm(figure: Any, chain: Chain, q: ArrayLike, target: Any = None, world:
     places = np.array([data.oMi[j].translation for j in range(model.njoints)])
     tips = [data.oMf[f] for f in chain.frame_ids]
     for j in range(1, model.njoints):
-        ends = places[[model.parents[j], j]]
+        drives = model.parents[j] == 0 and model.joints[j].nv > 1  # a base that drives or floats hangs on nothing
+        ends = places[[j if drives else model.parents[j], j]]
         on = j in on_path
         ax.plot(*ends.T, color=BLUE if on else GREY, linewidth=4 if on else 1, solid_capstyle="round")
         if on:

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import array, checked, instance, shown
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import FrameNotFound, InvalidConfiguration, InvalidSetting, InvalidTarget
+from pin_metaik.ik.goals.contradictions import check_contradictions
 from pin_metaik.ik.goals.goal import Goal, Goals, Outcome
 from pin_metaik.ik.goals.placed import Placed
 from pin_metaik.ik.goals.pose import ANYWHERE, Target, TargetLike
@@ -87,8 +88,8 @@ class IKProblem:
             world: What must not collide.
 
         Raises:
-            InvalidTarget: If a target is none, a frame has none, or two that name no frame; or if a goal's residual is
-                not (m,) finite numbers.
+            InvalidTarget: If a target is none, a frame has none, or two that name no frame; if a goal's residual is not
+                (m,) finite numbers, or two goals contradict each other, as far as that is seen without a search.
             FrameNotFound: If a target names a frame that is not the chain's.
             InvalidSetting: If the world's model is not the chain's.
             FixedFrame: If a goal is about a frame that the chain does not move.
@@ -108,6 +109,8 @@ class IKProblem:
         records = targets[0].record[None] if len(targets) == 1 else np.array([one.record for one in targets])
         rows = _rows(tuple([one.counts for one in targets]))
         asked = Goals.of(chain, goals) if goals else NO_GOALS
+        if goals:
+            check_contradictions(chain, targets, goals)
         wished = Wishes.of(chain, wishes) if wishes else NO_WISHES
         return IKProblem(chain, targets, records, rows, world, asked, wished)
 

@@ -58,7 +58,7 @@ class Posture(Bounded):
             InvalidTarget: If a value is outside the limits of its joint by more than the tolerance.
             InvalidConfiguration: If the configuration is not one of the chain's model.
         """
-        columns, least, most = _asked(self, chain)
+        columns, least, most = joints_of(self, chain)
         lower, upper = chain.limits.lower[columns], chain.limits.upper[columns]
         for i in np.flatnonzero((most < lower - self.tolerance) | (least > upper + self.tolerance)):
             name = chain.names[columns[i]]
@@ -66,7 +66,7 @@ class Posture(Bounded):
             raise InvalidTarget(f"joint {name!r} at {wanted} is outside its limits, {lower[i]:g} to {upper[i]:g}")
 
     def _values(self, at: Placed) -> Array:
-        columns, least, most = _asked(self, at.chain)
+        columns, least, most = joints_of(self, at.chain)
         periodic, x = at.chain.limits.periodic[columns], at.x[columns]
         if periodic.any():  # a continuous joint, by the shorter way round from the middle of its range
             middle = 0.5 * (least + most)
@@ -75,14 +75,14 @@ class Posture(Bounded):
         return x
 
     def _slopes(self, at: Placed) -> Array:
-        return np.eye(at.chain.n)[_asked(self, at.chain)[0]]
+        return np.eye(at.chain.n)[joints_of(self, at.chain)[0]]
 
     def _bounds(self, at: Placed) -> tuple[Array, Array]:
-        return _asked(self, at.chain)[1:]
+        return joints_of(self, at.chain)[1:]
 
 
 @lru_cache(KEPT)
-def _asked(posture: Posture, chain: Chain) -> tuple[list[int], Array, Array]:
+def joints_of(posture: Posture, chain: Chain) -> tuple[list[int], Array, Array]:
     """Columns (m,) of the coordinates that a posture is about, and the bounds (m,) of each of them."""
     joints = posture.joints
     if isinstance(joints, Mapping):

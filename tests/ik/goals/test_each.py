@@ -216,6 +216,16 @@ def test_two_hands_of_a_humanoid_hold_one_tray() -> None:
         assert np.linalg.norm(pin.log6(grasp.actInv(hands[0].actInv(hands[1]))).vector) < 2e-5
 
 
+class Growing:
+    """A goal whose residual has other rows elsewhere."""
+
+    def residual(self, at: goals.Placed) -> np.ndarray:
+        return np.ones(1 if abs(at.q).max() == 0.0 else 2)
+
+    def met(self, at: goals.Placed) -> bool:
+        return False
+
+
 REFUSED: dict[str, tuple[type[Exception], str, Callable[[], Any]]] = {
     "an empty box": (InvalidTarget, "it is empty", lambda: goals.InBox("tool0", (1, 1, 1), (0, 2, 2))),
     "a box everywhere": (InvalidTarget, "everywhere", lambda: goals.InBox("tool0", [-math.inf] * 3, [math.inf] * 3)),
@@ -260,6 +270,27 @@ REFUSED: dict[str, tuple[type[Exception], str, Callable[[], Any]]] = {
     "a function of NaN": (InvalidTarget, "finite", lambda: asked(goals.Custom(lambda q: math.nan))),
     "a function of words": (InvalidTarget, "expected numbers", lambda: asked(goals.Custom(lambda q: "far"))),
     "a matrix": (InvalidTarget, "expected shape", lambda: asked(goals.Custom(lambda q: np.eye(2)))),
+    "two poses of one frame": (
+        InvalidTarget,
+        r"Target of tool0 and FramePose of tool0 contradict each other: they are .* m apart",
+        lambda: asked([mik.Target(POSE, "tool0"), goals.FramePose("tool0", pin.SE3.Identity())]),
+    ),
+    "two orientations of one frame": (
+        InvalidTarget,
+        r"contradict each other: they are 1.* rad apart, and their tolerances add up to 0.1 rad",
+        lambda: asked([mik.Target.facing(np.eye(3), tolerance=0.1), goals.FramePose("tool0", POSE)]),
+    ),
+    "two ranges of one joint": (
+        InvalidTarget,
+        "no value of joint 'elbow_joint' is in both ranges",
+        lambda: asked([goals.Posture({"elbow_joint": 0.5}), goals.Posture({"elbow_joint": (1, 2)})]),
+    ),
+    "a function that is of NaN elsewhere": (
+        InvalidTarget,
+        "what <lambda> gives for a configuration",
+        lambda: asked(goals.Custom(lambda q: q[0] - 5.0 if q[0] < 0.1 else math.nan)),
+    ),
+    "a residual of another size elsewhere": (InvalidTarget, r"must be \(1,\) finite numbers", lambda: asked(Growing())),
     "a derivative of another shape": (
         InvalidTarget,
         "as a derivative: expected shape",
@@ -292,3 +323,33 @@ def test_goals_that_contradict_each_other_end_with_what_each_is_off_by() -> None
     assert [one["goal"] for one in said["goals"]] == ["Target of tool0", "OnPlane of tool0"]
     assert not any(one["met"] for one in said["goals"])
     assert said["goals"][1]["off"]["m"] == pytest.approx(0.1, abs=0.05)
+
+
+def test_a_joint_that_a_posture_wants_a_turn_away_from_the_start_stays_there() -> None:
+    arm = chain_of("ur5")
+    x = arm.box.sample(np.random.default_rng(1), 1)[0]
+    x[5] = 5.0  # rad; nearer to the start, at 0, is 5 - 2 pi
+    asked = [arm.placements(arm.q(x))[0], goals.Posture({arm.names[5]: 5.0})]
+    found = mik.solve_ik_all(arm, asked)
+    assert len(found) >= 1
+    assert np.abs(found.q[:, 5] - 5.0).max() <= 1.1e-5
+    assert mik.solve_ik(arm, asked, solver=mik.IKSolver(select="limits")).success
+
+
+def test_poses_in_the_order_of_two_frames_do_not_contradict_each_other() -> None:
+    arm = chain("two frames")
+    q = arm.q(arm.box.sample(np.random.default_rng(3), 1)[0])
+    height = float(goals.Placed(arm, q).centre_of_mass[2])
+    result = mik.solve_ik(arm, [*arm.placements(q), goals.CentreOfMass(least=height, most=height)])
+    assert result.success, result.why
+
+
+def test_one_pose_in_a_list_is_solved_as_the_pose_is() -> None:
+    arm = chain_of("ur5")
+    for x in arm.box.sample(np.random.default_rng(2), 3):
+        pose = arm.placements(arm.q(x))[0]
+        alone = mik.solve_ik(arm, pose)
+        for one in (pose, mik.Target(pose)):
+            listed = mik.solve_ik(arm, [one])
+            assert (listed.q == alone.q).all()
+            assert listed.evaluations == alone.evaluations
