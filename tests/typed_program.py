@@ -52,6 +52,7 @@ def inverse() -> bool:
     choice: mik.IKChoice = mik.solve_ik_any(chain, [poses[0], poses[0]])
     map_: mik.Reachability = mik.reachability(chain, [poses[0].translation], 2)
     grid: reachable.Grid = reachable.Grid.around(chain, 0.5)
+    print(grid.shape)
     place: mik.BasePlacement = mik.place_base(chain, [poses[0]], budget=mik.Budget(evaluations=20))
     target = mik.Target(poses[0], orientation_tolerance=(1e-5, 1e-5, np.inf))
     motions: mik.SelfMotions = mik.self_motions(chain, target)
