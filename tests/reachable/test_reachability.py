@@ -96,7 +96,7 @@ def test_the_browser_shows_a_map_with_the_robot_in_it(
         profile = [f"--user-data-dir={tmp_path / 'profile'}", "--window-size=800,600", "--enable-unsafe-swiftshader"]
         seen = subprocess.Popen([*browser, *profile, page], stdout=subprocess.DEVNULL, stderr=told)
         try:
-            picture = shown.picture(640, 480, timeout=100.0).astype(float)
+            picture = shown.picture(640, 480, timeout=300.0).astype(float)
         finally:
             seen.terminate()
             seen.wait()
