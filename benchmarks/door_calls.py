@@ -874,6 +874,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "watch": None,
     },
     "reachable.Grid": lambda: {"lower": (1.0, 0.0, 0.0), "upper": (1.5, 0.5, 0.0), "spacing": 0.5},
+    "reachable.Grid.around": lambda: {"chain": arm(), "spacing": 0.5},
     "reachable.spread_rotations": lambda: {"count": 3},
     "reachable.draw_reachability": lambda: {"figure": figure(), "found": reached(), "slices": 1},
     "reachable.save_reachability": lambda: {"found": reached(), "path": "map.png", "slices": 1},

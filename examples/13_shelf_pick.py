@@ -67,7 +67,7 @@ def main() -> None:
         draw_world(axes, world if k else without(world, "box"), Q)
         axes.set_title(title)
         axes.view_init(elev=22, azim=-125)
-    figure.savefig(picture, dpi=110)
+    figure.savefig(picture, dpi=110, bbox_inches="tight", pad_inches=0.15)  # labels of z stick out
     print(picture)
 
 

@@ -63,6 +63,7 @@ def main() -> None:
 
     path = next((path for path in paths.values() if path), list(paths.values())[-1])
     figure = Figure(figsize=(12, 6), layout="constrained")
+    figure.get_layout_engine().set(wspace=0.08)  # room for the label of z
     axes = figure.add_subplot(1, 2, 1, projection="3d")
     draw_world(axes, world, path.q[[POSES // 2]])
     axes.view_init(elev=24, azim=-35)

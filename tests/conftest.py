@@ -1,6 +1,7 @@
-"""Nothing that tests work out stays in the user's cache; and how long properties are looked at."""
+"""Nothing that tests work out stays in the user's cache; how long properties are looked at; the browser for pages."""
 
 import os
+import shutil
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -10,7 +11,23 @@ settings.register_profile("quick", max_examples=12, derandomize=True, database=N
 settings.register_profile("deep", max_examples=2_000, **COMMON)  # make soak
 settings.load_profile("quick")
 
+FLAGS = [
+    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-component-update",
+    "--disable-background-networking", "--disable-sync", "--hide-scrollbars", "--enable-logging=stderr",
+]  # fmt: skip
+
 
 @pytest.fixture(scope="session", autouse=True)
 def own_cache(tmp_path_factory: pytest.TempPathFactory) -> None:
     os.environ["PIN_METAIK_CACHE"] = str(tmp_path_factory.mktemp("cache"))
+
+
+@pytest.fixture(scope="session")
+def browser() -> list[str]:
+    """The command that runs Chromium without a window; a test adds a profile of its own."""
+    found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if found is None and os.environ.get("PIN_METAIK_REQUIRE_CHROMIUM") == "1":
+        pytest.fail("PIN_METAIK_REQUIRE_CHROMIUM=1 and there is no chromium")
+    if found is None:
+        pytest.skip("no chromium here")
+    return [found, *FLAGS]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import pin_metaik as mik
-from pin_metaik import collision, mobile, stewart
+from pin_metaik import collision, mobile, reachable, stewart
 
 Floats = NDArray[np.float64]
 
@@ -51,6 +51,8 @@ def inverse() -> bool:
     print(why.name, timed.duration, timed.sample(0.01).v.shape)
     choice: mik.IKChoice = mik.solve_ik_any(chain, [poses[0], poses[0]])
     map_: mik.Reachability = mik.reachability(chain, [poses[0].translation], 2)
+    grid: reachable.Grid = reachable.Grid.around(chain, 0.5)
+    print(grid.shape)
     place: mik.BasePlacement = mik.place_base(chain, [poses[0]], budget=mik.Budget(evaluations=20))
     target = mik.Target(poses[0], orientation_tolerance=(1e-5, 1e-5, np.inf))
     motions: mik.SelfMotions = mik.self_motions(chain, target)

@@ -134,12 +134,8 @@ class Layers:
         traced = 0
         for done, i in enumerate(wanted):
             tell(watch, Progress(done, len(wanted), label="along self-motions"))
-            problem = self.problems[i]
-            if (
-                traced == TRACED
-                or (i not in ends and len(self.found[i]))
-                or problem.refuted not in (None, Proof.LIMITS)
-            ):
+            problem, helped = self.problems[i], i not in ends and len(self.found[i])
+            if traced == TRACED or helped or problem.refuted not in (None, Proof.LIMITS):
                 continue
             points = self._beside(i, leaves(problem, self.base, DRIFT * float(self.bound.min()), POINTS))
             traced += bool(len(points))

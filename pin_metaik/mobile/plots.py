@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 
 from pin_metaik.arrays import Array
-from pin_metaik.lookup import need
+from pin_metaik.figures import new_figure
 from pin_metaik.mobile.curves.curve import Curve
 from pin_metaik.mobile.curves.footprint import Footprint
 from pin_metaik.mobile.motion.result import TrajectoryPlan
@@ -43,10 +43,7 @@ def save(file: str | File, draw: Callable[[Any], None], size: tuple[float, float
     Raises:
         MissingExtra: matplotlib is not installed.
     """
-    need("drawing figures", "plots", "matplotlib")
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=size, layout="constrained")
+    figure = new_figure(size)
     draw(figure)
     figure.savefig(file, dpi=DPI)
 

@@ -70,7 +70,7 @@ class Rooms:
 
     def near(self, placed: Placed, travel: Travel, spare: float) -> Near:
         """The pairs that are within ``INFLUENCE``, or that may come within ``spare`` (m), of those placed."""
-        found = np.array(travel.near(placed, INFLUENCE), dtype=np.int64).reshape(-1, 3)
+        found = np.array(travel.near(placed, max(INFLUENCE, spare)), dtype=np.int64).reshape(-1, 3)
         pairs, rooms, rows = np.empty_like(found), np.empty((len(found), 4)), np.empty((len(found), 10))
         count = self._survey(
             placed.poses[: self._moving], *self._covers, self._hints, self._taken, found, placed.least[: len(found)],
@@ -103,14 +103,16 @@ class Rooms:
         room, normal = self.checker.room(placed, i, j, k, needed), placed.normal
         first, second = placed.points
         if not 0.5 < float(normal @ normal) < 2.0 and room > ROUNDING:  # meshes have none
-            normal = (second - first) / np.linalg.norm(second - first)
-        row[:3], row[3:6], row[6:9], row[9] = normal, first, second, room
-        hint = self._hints[number]
-        if 0.5 < float(normal @ normal) < 2.0:
+            normal = second - first
+        length, hint = float(np.linalg.norm(normal)), self._hints[number]
+        if length > ROUNDING:
+            normal = normal / length
             (A, a), (B, b) = self._frame(placed, i), self._frame(placed, j)
             hint[:3], hint[3:6], hint[6:9], hint[9:] = normal @ A, normal @ B, (first - a) @ A, (second - b) @ B
+            row[:3] = normal
         else:  # surfaces that cross have none either way
             row[:3], hint[:] = np.nan, 0.0
+        row[3:6], row[6:9], row[9] = first, second, room
         self._known[number] = room, self._own_gone[k] if k >= 0 else self._body_gone[i]
         return room
 

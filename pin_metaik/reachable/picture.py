@@ -9,9 +9,8 @@ import numpy as np
 
 from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.lookup import need
+from pin_metaik.figures import need_plots, new_figure, picture_file
 from pin_metaik.optimize.settings import few
-from pin_metaik.output import writable
 from pin_metaik.reachable.result import Reachability
 
 DPI = 150
@@ -30,14 +29,11 @@ def save_reachability(found: Reachability, path: str | Path, *, slices: int = 4)
     Raises:
         MissingExtra: If matplotlib is not installed.
         CannotWrite: If the file cannot be written.
-        InvalidSetting: If there is not at least one slice.
+        InvalidSetting: If there is not at least one slice, or the file is none of a picture.
     """
-    need("a picture", "plots", "matplotlib")
-    from matplotlib.figure import Figure
-
     few("slices", slices)
-    where = writable(path)
-    figure = Figure(figsize=(3.2 * slices + 1.0, 6.4) if _is_grid(found) else (8.0, 4.0), layout="constrained")
+    where = picture_file(path)
+    figure = new_figure((3.2 * slices + 1.0, 6.4) if _is_grid(found) else (8.0, 4.0))
     draw_reachability(figure, found, slices=slices)
     figure.savefig(where, dpi=DPI)
     return where
@@ -59,7 +55,7 @@ def draw_reachability(figure: Any, found: Reachability, *, slices: int = 4) -> N
         MissingExtra: If matplotlib is not installed.
         InvalidSetting: If there is not at least one slice, or the figure is none.
     """
-    need("a picture", "plots", "matplotlib")
+    need_plots()
     few("slices", slices)
     if not hasattr(figure, "subplots"):
         raise InvalidSetting("figure is one of matplotlib's: matplotlib.figure.Figure()")

@@ -12,7 +12,7 @@ from pin_metaik.errors import InvalidSetting
 from pin_metaik.reachable.result import Reachability
 
 FILLED = 0.3  # edge of the cube at a position, as a share of the distance to the next one
-ASIDE, DISTANCE = np.array([0.35, -1.0, 0.45]), 1.7  # where the page looks from, in sizes of the map
+ASIDE, DISTANCE = np.array([0.35, -1.0, 0.45]), 0.9  # where the page looks from, in sizes of the map
 # Viridis (van der Walt and Smith 2015) from the worst to the best: red, green and blue.
 COLOURS = np.array([[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]], dtype=float)
 CORNERS = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])

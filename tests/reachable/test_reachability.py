@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
+import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
 import pytest
-from numpy.testing import assert_array_equal
+from numpy.testing import assert_allclose, assert_array_equal
 
 import pin_metaik as mik
 from pin_metaik.collision import Box, Obstacle
@@ -43,17 +46,69 @@ def test_a_map_says_what_single_searches_say(ur5_map: Reachability) -> None:
     assert ((ur5_map.best > 0.0) == ur5_map.reached.any(axis=1)).all()
 
 
-def test_a_map_is_written_and_read(ur5_map: Reachability, tmp_path: Path) -> None:
-    again = Reachability.load(ur5_map.save(tmp_path / "map.npz"))
+@pytest.mark.parametrize("ending", [".npz", ".parquet"])
+def test_a_map_is_written_and_read(ur5_map: Reachability, tmp_path: Path, ending: str) -> None:
+    again = Reachability.load(ur5_map.save(tmp_path / f"map{ending}"))
     for name in ("positions", "orientations", "status", "manipulability"):
         assert_array_equal(getattr(again, name), getattr(ur5_map, name))
+        assert getattr(again, name).dtype == getattr(ur5_map, name).dtype
     assert again.shape == ur5_map.shape
     assert again.at(ur5_map.positions[5] + 0.01) == ur5_map.share[5]
     assert str(again) == str(ur5_map)
-    (tmp_path / "none.npz").write_bytes(b"PK nothing")
-    for file in ("none.npz", "missing.npz"):
+    (tmp_path / f"none{ending}").write_bytes(b"PK nothing")
+    for file in (f"none{ending}", f"missing{ending}"):
         with pytest.raises(InvalidSetting, match="not a map"):
             Reachability.load(tmp_path / file)
+    with pytest.raises(InvalidSetting, match=r"ends in \.npz or \.parquet"):
+        ur5_map.save(tmp_path / "map.csv")
+
+
+def test_a_map_as_parquet_is_a_table_of_poses(ur5_map: Reachability, tmp_path: Path) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+    table = parquet.read_table(ur5_map.save(tmp_path / "map.parquet"))
+    column = {name: table.column(name).to_numpy(zero_copy_only=False) for name in table.column_names}
+    assert table.num_rows == ur5_map.status.size
+    assert_array_equal(column["status"] == "SOLVED", ur5_map.reached.ravel())
+    for i, axis in enumerate("xyz"):
+        assert_array_equal(column[axis], ur5_map.positions[column["position"], i])
+    k, m = column["position"], column["orientation"]
+    assert_array_equal(column["manipulability"], ur5_map.manipulability[k, m])
+
+
+def test_a_grid_around_a_chain_holds_all_that_it_reaches() -> None:
+    chain, rng = chain_of("ur5"), np.random.default_rng(0)
+    grid = Grid.around(chain, 0.1)
+    tips = chain.poses(chain.box.sample(rng, 500))[:, 0, :3, 3]
+    assert (tips > np.subtract(grid.lower, 0.1)).all() and (tips < np.add(grid.upper, 0.1)).all()
+    assert_allclose(np.array(grid.lower) / 0.1, np.round(np.array(grid.lower) / 0.1), atol=1e-9)
+
+
+def test_the_browser_shows_a_map_with_the_robot_in_it(
+    ur5_map: Reachability, browser: list[str], tmp_path: Path
+) -> None:
+    pytest.importorskip("viser")
+    from pin_metaik.reachable.viewer import show_reachability
+
+    world = mik.CollisionWorld(robot_of("ur5"))
+    shown = show_reachability(ur5_map, world, port=0)
+    log, page = tmp_path / "log", f"http://localhost:{shown.viewer.get_port()}"
+    with log.open("w") as told:
+        profile = [f"--user-data-dir={tmp_path / 'profile'}", "--window-size=800,600", "--enable-unsafe-swiftshader"]
+        seen = subprocess.Popen([*browser, *profile, page], stdout=subprocess.DEVNULL, stderr=told)
+        try:
+            picture = shown.picture(640, 480, timeout=300.0).astype(float)
+        finally:
+            seen.terminate()
+            seen.wait()
+            shown.viewer.stop()
+    coloured = picture.max(axis=2) - picture.min(axis=2) > 40.0
+    grey = (picture.max(axis=2) < 200.0) & ~coloured
+    assert 0.005 < coloured.mean() < 0.6  # cubes
+    assert grey.mean() > 0.001  # the robot
+    assert not re.findall(r"ERROR:CONSOLE.*", log.read_text())
+    nothing = replace(ur5_map, status=np.zeros_like(ur5_map.status))
+    with pytest.raises(InvalidSetting, match="reaches none"):
+        show_reachability(nothing, world, port=0)
 
 
 def test_work_that_was_stopped_goes_on_and_comes_to_the_same(ur5_map: Reachability, tmp_path: Path) -> None:

@@ -1,11 +1,8 @@
 """The page: complete in itself, escaped, and shown without an error by a real browser."""
 
 import json
-import os
 import re
-import shutil
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -15,10 +12,6 @@ from pin_metaik.compare.report import Column, Figure, Section, Table
 from pin_metaik.compare.report.html import html
 from tests.compare.suites import JUMPING
 
-FLAGS = [
-    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-component-update",
-    "--disable-background-networking", "--disable-sync", "--hide-scrollbars", "--enable-logging=stderr",
-]  # fmt: skip
 MEASURE = """<script>addEventListener("load", () => {
   const drawn = svg => [...svg.querySelectorAll("path, use, text, image")].filter(e => {
     const box = e.getBoundingClientRect(); return box.width + box.height > 0; }).length;
@@ -42,17 +35,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
     write_report(out)
     return out
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[list[str]]:
-    """The command that runs Chromium without a window, with a profile of its own."""
-    found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if found is None and os.environ.get("PIN_METAIK_REQUIRE_CHROMIUM") == "1":
-        pytest.fail("PIN_METAIK_REQUIRE_CHROMIUM=1 and there is no chromium")
-    if found is None:
-        pytest.skip("no chromium here")
-    yield [found, *FLAGS]
 
 
 def test_the_page_needs_nothing_else_and_is_escaped(folder: Path) -> None:
