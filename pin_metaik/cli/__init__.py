@@ -11,7 +11,7 @@ from rich.console import Console
 from typer.core import TyperGroup
 
 from pin_metaik import __version__
-from pin_metaik.cli import compare, demo, mobile, reproduce, robots, solve, stewart, warm
+from pin_metaik.cli import compare, demo, export, mobile, reproduce, robots, solve, stewart, warm
 from pin_metaik.cli.codes import INTERRUPTED, NONSENSE
 from pin_metaik.cli.mobile.plan import plan
 from pin_metaik.cli.options import ManyValues
@@ -46,6 +46,7 @@ app.command("compare", cls=ManyValues)(compare.compare)
 app.command("report")(compare.report)
 app.command("replay")(compare.replay)
 app.command("plan")(plan)
+app.command("export")(export.export)
 app.command("warm")(warm.warm)
 app.add_typer(mobile.app, name="mobile")
 app.add_typer(stewart.app, name="stewart")

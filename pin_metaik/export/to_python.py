@@ -15,7 +15,7 @@ class Plain(ast.NodeTransformer):
     def __init__(self, numbers: Mapping[str, Any]) -> None:
         self.numbers = numbers
 
-    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:  # noqa: N802  as ast calls it
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
         """A function without annotations."""
         node.returns = None
         node.args.args = [argument for argument in node.args.args if argument.arg != "form"]
@@ -24,16 +24,16 @@ class Plain(ast.NodeTransformer):
         self.generic_visit(node)
         return node
 
-    def visit_Name(self, node: ast.Name) -> ast.expr:  # noqa: N802
+    def visit_Name(self, node: ast.Name) -> ast.expr:
         """A constant, if it is one."""
         return self._constant(node)
 
-    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:  # noqa: N802
+    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
         """A number of the closed form, if it is one."""
         known = self._constant(node)
         return node if known is node else known
 
-    def visit_Call(self, node: ast.Call) -> ast.expr:  # noqa: N802
+    def visit_Call(self, node: ast.Call) -> ast.expr:
         """A call, without the closed form; ``vector`` of a row of it is the row."""
         name = ast.unparse(node.func)
         if name == "vector":

@@ -10,7 +10,7 @@ import numpy as np
 
 from pin_metaik.arguments import checked
 from pin_metaik.errors import CannotExport
-from pin_metaik.export.drivers import C, PYTHON
+from pin_metaik.export.drivers import PYTHON, C
 from pin_metaik.export.to_c import Translation
 from pin_metaik.export.to_python import python_of
 from pin_metaik.kinematics import Chain
