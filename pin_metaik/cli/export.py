@@ -21,7 +21,7 @@ def export(
         list[str] | None, typer.Option(metavar="JOINT", help="A joint that stays at its neutral; may be repeated.")
     ] = None,
 ) -> None:
-    """Write all configurations of an arm for a pose as C or Python without dependencies, for arms with a closed form."""
+    """Write what solves an arm with a closed form, all its configurations for a pose, as C or Python of its own."""
     loaded = load_robot(robot)
     chain = Chain(loaded.model, loaded.frame if frame is None else frame, locked=split(lock or ()))
     write_export(chain, out)

@@ -2,8 +2,9 @@
 
 from string import Template
 
-C = Template("""/* All configurations of $name for a pose. Written by pin-metaik export; to be compiled as C99, with -lm.
+C = Template("""/* All configurations of $name for a pose. Written by pin-metaik export.
  *
+ * To be compiled as C99, with -lm.
  * Joints: $joints.
  */
 #include <math.h>

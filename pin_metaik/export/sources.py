@@ -1,7 +1,7 @@
 """The functions that exported code is made of: those of the compiled kernels themselves, by their source.
 
-So there is one closed form, not one a language. What is added here is what the kernels have no need of: how far a branch
-is from the pose, in the same subset of Python.
+So there is one closed form, not one a language. What is added here is what the kernels have no need of: how far a
+branch is from the pose, in the same subset of Python.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Functions of plain numbers and tuples, in Python, to C.
 
-They have what the closed form of an arm has: tuples of numbers, which become structures of an array; tuples of these and
-flags, which become structures with a member each; assignments, also of several at once; if, return, and expressions.
+They have what the closed form of an arm has: tuples of numbers, which become structures of an array; tuples of these
+and flags, which become structures with a member each; assignments, also of several at once; if, return, and
+expressions.
 """
 
 from __future__ import annotations

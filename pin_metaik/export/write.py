@@ -46,8 +46,8 @@ def exported(chain: Chain, language: str = "c") -> str:
     off = np.inf if proof is None else float(max(proof.deviation)) - layout.ROUNDING
     if proof is None or off > 1e-6:
         raise CannotExport(
-            f"{chain.model.name!r} has no closed form to write: six turning joints, axes 2 and 3 parallel, axes 5 and 6 "
-            "meeting, and axis 4 either through that point, too, or parallel to axes 2 and 3, have one, as ur5, "
+            f"{chain.model.name!r} has no closed form to write: six turning joints, axes 2 and 3 parallel, axes 5 "
+            "and 6 meeting, and axis 4 either through that point, too, or parallel to axes 2 and 3, have one, as ur5, "
             "puma560, rv7fl, z1 and kinova do"
         )
     return LANGUAGES[language](chain, _numbers(chain))

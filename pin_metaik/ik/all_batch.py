@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import cast
 
 import numpy as np
@@ -81,10 +82,8 @@ def solve_ik_all_batch(
             raise InvalidTarget(f"target {i}: {error}") from None
         count.add(1)
 
-    try:
+    with suppress(Stopped):
         run_parallel(one, range(k), min(workers or os.cpu_count() or 1, k))
-    except Stopped:
-        pass
     here = chain if q0 is None else chain.at(q0)
     nothing = np.empty((0, chain.model.nq))
     return tuple(
