@@ -13,10 +13,8 @@ from typing import Any, cast
 
 from pin_metaik.kinematics.kernel import closed_form, forward
 from pin_metaik.kinematics.kernel.closed_form import (
-    Floats,
     Numbers,
     Vector,
-    cos_sin,
     cross,
     dot,
     minus,
@@ -25,6 +23,7 @@ from pin_metaik.kinematics.kernel.closed_form import (
     turned,
     vector,
 )
+from pin_metaik.kinematics.kernel.forward import cos_sin
 from pin_metaik.kinematics.kernel.layout import (
     ACROSS,
     ACROSS_WORLD,
@@ -41,6 +40,7 @@ from pin_metaik.kinematics.kernel.layout import (
     O4_O5,
     O5_TIP,
     UPPER,
+    Floats,
 )
 
 

@@ -17,11 +17,11 @@ from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.kernel import layout
 from pin_metaik.output import writable
 
-ROWS = ("H1", "H2", "H3", "H4", "H5", "H6", "O1", "O1_O2", "UPPER", "FORE", "O4_O5", "O5_TIP", "AHEAD", "ACROSS")
-ROWS += ("ACROSS_WORLD",)
+ROWS = ("H1", "H2", "H3", "H4", "H5", "H6", "O1", "O1_O2", "UPPER", "FORE", "O4_O5", "O5_TIP", "AHEAD")
+ACROSS = ("ACROSS", "ACROSS_WORLD")
 ENTRIES = ("LEVEL", "SIDE_2", "SIDE_3")
 FAR = 1e9  # rad: where a joint without limits ends
-EXACT = 1e-9  # m and rad: how far an arm may be from its closed form, as nothing descends in exported code
+EXACT = 1e-6  # m and rad: how far an arm may be from its closed form, as nothing descends in exported code
 
 
 @checked
@@ -44,7 +44,7 @@ def exported(chain: Chain, language: str = "c") -> str:
         raise CannotExport(f"there is no export to {language!r}; known: {', '.join(LANGUAGES)}")
     proof = chain.form_proof
     off = np.inf if proof is None else float(max(proof.deviation)) - layout.ROUNDING
-    if proof is None or off > 1e-6:
+    if proof is None or off > EXACT:
         raise CannotExport(
             f"{chain.model.name!r} has no closed form to write: six turning joints, axes 2 and 3 parallel, axes 5 "
             "and 6 meeting, and axis 4 either through that point, too, or parallel to axes 2 and 3, have one, as ur5, "
@@ -71,7 +71,7 @@ def _numbers(chain: Chain) -> dict[str, Any]:
     from pin_metaik.export.sources import CONSTANTS
 
     form = chain.form
-    rows = {f"form[{name}]": tuple(form[getattr(layout, name)].tolist()) for name in ROWS}
+    rows = {f"form[{name}]": tuple(form[getattr(layout, name)].tolist()) for name in ROWS + ACROSS}
     entries = {f"form[{name}]": float(form[getattr(layout, name)]) for name in ENTRIES}
     return {**rows, **entries, **CONSTANTS, "ORIGIN": (0.0, 0.0, 0.0)}
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from contextlib import suppress
-from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -75,7 +74,7 @@ def solve_ik_all_batch(
     def one(i: int) -> None:
         try:
             found[i] = solve_ik_all(
-                chain, cast(Asked, targets[i]), q0, limit=limit, apart=apart, solver=solver, budget=budget,
+                chain, targets[i], q0, limit=limit, apart=apart, solver=solver, budget=budget,
                 certify=certify, world=world, rng=seed,
             )  # fmt: skip
         except InvalidTarget as error:

@@ -6,6 +6,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import pin_metaik as mik
+from pin_metaik.collision import Obstacle, Sphere
 from pin_metaik.dexterity import manipulability, singular_values
 from pin_metaik.errors import InvalidBudget, InvalidSetting, InvalidTarget, UnknownName
 from tests.robots_under_test import chain_of
@@ -152,3 +153,20 @@ def test_solutions_of_many_targets_do_not_depend_on_the_workers() -> None:
     ended = mik.solve_ik_all_batch(chain, poses, workers=1, watch=lambda done: done.done >= 3)
     assert [bool(len(one)) for one in ended] == [True] * 3 + [False] * 9
     assert ended[-1].interrupted and not ended[0].interrupted
+
+
+def test_select_clearance_keeps_farther_from_obstacles_than_the_first_solution() -> None:
+    chain = chain_of("ur5")
+    robot = mik.load_robot("ur5")
+    world = mik.CollisionWorld(robot, [Obstacle("ball", Sphere(0.1), (0.35, 0.45, 0.9))])
+    x = np.array([0.3, -1.2, 1.4, -0.9, -1.5, 0.6])
+    goal = chain.placements(chain.q(x))[0]
+    first = mik.solve_ik(chain, goal, world=world)
+    most = mik.solve_ik(chain, goal, solver=mik.IKSolver(select="clearance"), world=world)
+    every = mik.solve_ik_all(chain, goal, world=world)
+    assert most.success
+    distances = [world.min_distance(q).distance for q in every]
+    assert world.min_distance(most.q).distance >= max(distances) - 1e-6
+    assert max(distances) >= world.min_distance(first.q).distance - 1e-6
+    with pytest.raises(InvalidSetting, match="give one"):
+        mik.solve_ik(chain, goal, solver=mik.IKSolver(select="clearance"))
