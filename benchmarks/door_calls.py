@@ -19,6 +19,7 @@ import pin_metaik as mik
 from pin_metaik import (
     collision,
     compare,
+    export,
     goals,
     kinematics,
     learn,
@@ -50,6 +51,7 @@ MODULES = {
     "compare": compare,
     "timing": timing,
     "reachable": reachable,
+    "export": export,
 }
 REGISTRIES: dict[str, Mapping[str, Any]] = {
     "ALGORITHMS": optimize.ALGORITHMS,
@@ -802,6 +804,22 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "rng": 0,
         "watch": None,
     },
+    "mik.solve_ik_all_batch": lambda: {
+        "chain": chain(),
+        "targets": [POSE, POSE],
+        "q0": X6,
+        "limit": 4,
+        "apart": 0.01,
+        "solver": None,
+        "budget": FEW,
+        "certify": True,
+        "world": None,
+        "workers": 1,
+        "rng": 0,
+        "watch": None,
+    },
+    "export.exported": lambda: {"chain": chain(), "language": "c"},
+    "export.write_export": lambda: {"chain": chain(), "path": "arm.c"},
     "mik.solve_ik_batch": lambda: {
         "chain": chain(),
         "targets": [POSE, POSE],

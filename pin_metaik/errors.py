@@ -125,6 +125,10 @@ class Cancelled(MetaIKError):
     """A watch ended work that has nothing to return before it is done."""
 
 
+class CannotExport(MetaIKError):
+    """An arm that cannot be written as code of its own, or a language that there is none for."""
+
+
 class CannotWrite(MetaIKError):
     """A file or a folder that is to be written, and cannot be."""
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import pin_metaik as mik
-from pin_metaik import collision, mobile, reachable, stewart
+from pin_metaik import collision, export, mobile, reachable, stewart
 
 Floats = NDArray[np.float64]
 
@@ -41,6 +41,11 @@ def inverse() -> bool:
     status: mik.IKStatus = result.status
     proof: mik.Proof | None = result.proof
     every: mik.IKSolutions = mik.solve_ik_all(chain, poses[0])
+    labels: tuple[str, ...] = every.labels
+    label: str = result.label
+    sets: tuple[mik.IKSolutions, ...] = mik.solve_ik_all_batch(chain, [poses[0], poses[0]], workers=2)
+    text: str = export.exported(chain, "python")
+    print(label in labels, len(sets), len(text))
     batch: mik.IKBatch = mik.solve_ik_batch(chain, [poses[0], poses[0]])
     path: mik.IKPath = mik.solve_ik_path(chain, [poses[0], poses[0]], q, max_step=0.2)
     limits_of_motion: mik.MotionLimits = mik.MotionLimits.of(chain, acceleration=8.0)

@@ -11,7 +11,19 @@ from rich.console import Console
 from typer.core import TyperGroup
 
 from pin_metaik import __version__
-from pin_metaik.cli import compare, demo, mobile, reachable, reproduce, robots, solve, stewart, toolbox, warm
+from pin_metaik.cli import (
+    compare,
+    demo,
+    export,
+    mobile,
+    reachable,
+    reproduce,
+    robots,
+    solve,
+    stewart,
+    toolbox,
+    warm,
+)
 from pin_metaik.cli.codes import INTERRUPTED, NONSENSE
 from pin_metaik.cli.examples import show_examples
 from pin_metaik.cli.mobile.plan import plan
@@ -49,6 +61,7 @@ app.command("report")(compare.report)
 app.command("replay")(compare.replay)
 app.command("plan")(plan)
 app.command("toolbox")(toolbox.toolbox)
+app.command("export")(export.export)
 app.command("warm")(warm.warm)
 app.add_typer(mobile.app, name="mobile")
 app.add_typer(stewart.app, name="stewart")

@@ -1,6 +1,7 @@
 """Inverse kinematics: targets, problems, solvers, refiners and results."""
 
 from pin_metaik.ik import goals
+from pin_metaik.ik.all_batch import solve_ik_all_batch
 from pin_metaik.ik.any import IKChoice, solve_ik_any
 from pin_metaik.ik.batch import IKBatch, solve_ik_batch
 from pin_metaik.ik.breaks import BreakReason, PathBreak, Reconfiguration
@@ -45,6 +46,7 @@ __all__ = [
     "self_motions",
     "solve_ik",
     "solve_ik_all",
+    "solve_ik_all_batch",
     "solve_ik_any",
     "solve_ik_batch",
     "solve_ik_path",

@@ -32,7 +32,7 @@ ROOM = 0.1  # of the distance between distinct solutions: tolerances that may mo
 HALF = 0.25  # of it: half width of the boxes that cover all configurations
 COVERED = 16_384  # boxes that a cover may keep; more are a curve of solutions
 AT_A_TIME = 50_000  # boxes between two looks at the clock and at what a watch says
-FINEST, FINER = 1e-7, 2_000  # rad or m, boxes: how closely a kept box without a solution is looked at
+FINEST, FINER = 1e-7, 20_000  # rad or m, boxes: how closely a kept box without a solution is looked at
 EXACT = 1e-9  # m and rad
 SINGULAR = 1e-6  # least singular value of a Jacobian below which a solution counts as one of a curve
 

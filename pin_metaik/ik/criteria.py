@@ -11,6 +11,7 @@ import numpy as np
 
 from pin_metaik.arguments import shown
 from pin_metaik.arrays import Array
+from pin_metaik.collision import CollisionWorld
 from pin_metaik.dexterity import RANK_TOLERANCE, manipulability
 from pin_metaik.errors import InvalidSetting, UnknownName
 from pin_metaik.ik.gravity import gravity_torque
@@ -62,11 +63,33 @@ def gravity_torques(problem: IKProblem, X: Array, x0: Array) -> Array:
     return np.array([torque(q) for q in problem.chain.q(X)])
 
 
+def neg_clearance(problem: IKProblem, X: Array, x0: Array) -> Array:
+    """Minus the distance (k,) in m to the nearest collision in the problem's world, at X (k, n).
+
+    Raises:
+        InvalidSetting: There is no world.
+    """
+    world = world_of(problem)
+    return np.array([-world.min_distance(q).distance for q in problem.chain.q(X)])
+
+
+def world_of(problem: IKProblem) -> CollisionWorld:
+    """The world that clearance is measured in.
+
+    Raises:
+        InvalidSetting: There is none.
+    """
+    if problem.world is None:
+        raise InvalidSetting("clearance is a distance in a world: give one, as solve_ik(chain, target, world=world)")
+    return problem.world
+
+
 CRITERIA: dict[str, Measure] = {
     "nearest": displacement,
     "manipulability": neg_manipulability,
     "limits": limit_proximity,
     "torque": gravity_torques,
+    "clearance": neg_clearance,
 }
 
 

@@ -17,7 +17,7 @@ from pin_metaik.arguments import checked, instance
 from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.clearance import keep_clear
 from pin_metaik.ik.collect import collect
-from pin_metaik.ik.criteria import Criterion, Measure, measure_of, slide, turned, wished
+from pin_metaik.ik.criteria import Criterion, Measure, measure_of, slide, turned, wished, world_of
 from pin_metaik.ik.exclude import FAR, FIRST, LONG, Exclusion
 from pin_metaik.ik.goals.pose import DEFAULT_TOLERANCE
 from pin_metaik.ik.plain_pose import solve_plain
@@ -65,9 +65,10 @@ class IKSolver:
         starts: How many starts to refine without a seeder; ``None``: until the budget is spent.
         select: ``"first"`` solution found, or of all distinct ones that the budget allows to find, the ``"nearest"`` to
             ``q0``, the one of best ``"manipulability"``, the one that keeps farthest from the ``"limits"``, the one
-            held with the least ``"torque"`` against gravity, or the one for which a function of your own, of a
-            configuration q (nq,), gives the lowest number. With one spare joint and no world it is the best of all
-            self-motions (see ``self_motions``), where these are proved to be all.
+            held with the least ``"torque"`` against gravity, the one with the most ``"clearance"`` in its world, or the
+            one for which a function of your own, of a configuration q (nq,), gives the lowest number. With one spare
+            joint and no world it is the best of all self-motions (see ``self_motions``), where these are proved to be
+            all.
         trace: Whether to keep the seeder's convergence.
         patience: Evaluations after which the automatic search ends although nothing is proved, or a tenth of the
             budget, if that is more; the rest of the budget is for boxes (see ``Proof``). Of 13.7 million targets with a
@@ -160,6 +161,8 @@ class IKSolver:
             instance(Refinement, first=first)
         if self._descent is None and problem.wishes:
             raise InvalidSetting("wishes take a refiner, e.g. IKSolver('gwo', 'dls')")
+        if self.select == "clearance":
+            world_of(problem)
         if q0 is not None:
             problem = problem.at(q0)
         chain = problem.chain

@@ -6,8 +6,9 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import pin_metaik as mik
+from pin_metaik.collision import Obstacle, Sphere
 from pin_metaik.dexterity import manipulability, singular_values
-from pin_metaik.errors import InvalidBudget, InvalidSetting, UnknownName
+from pin_metaik.errors import InvalidBudget, InvalidSetting, InvalidTarget, UnknownName
 from tests.robots_under_test import chain_of
 
 
@@ -119,3 +120,53 @@ def test_bad_settings_are_named() -> None:
         mik.solve_ik_all(chain, [0.3, 0.3, 0.3], limit=0)
     with pytest.raises(InvalidBudget, match="evaluations"):
         mik.solve_ik_all(chain, [0.3, 0.3, 0.3], budget=mik.Budget(seconds=1.0))
+
+
+@pytest.mark.parametrize("name", ["ur5", "puma560", "z1", "aerial_arm", "bravo7_no_ee"])
+def test_the_quick_way_and_the_long_way_have_the_same_solutions(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    chain, rng = chain_of(name), np.random.default_rng(4)
+    quick = 0
+    for x, x0 in zip(chain.box.sample(rng, 25), chain.box.sample(rng, 25), strict=True):
+        pose, q0 = chain.poses(x)[0, 0], chain.q(x0)
+        with monkeypatch.context() as patch:
+            patch.setattr("pin_metaik.ik.solutions.all_of_plain", lambda *asked: None)
+            long = mik.solve_ik_all(chain, pose, q0, certify=False)
+        every = mik.solve_ik_all(chain, pose, q0, certify=False)
+        assert_array_equal(every.q, long.q)
+        assert (every.complete, every.evaluations) == (long.complete, long.evaluations)
+        assert_allclose(every.problem.targets[0].pose.homogeneous, pose, atol=1e-12)
+        quick += not isinstance(every.given, mik.IKProblem)
+    assert quick >= 20  # of 25; near singularities the long way is the only one
+
+
+def test_solutions_of_many_targets_do_not_depend_on_the_workers() -> None:
+    chain = chain_of("aerial_arm")
+    poses = chain.poses(chain.box.sample(np.random.default_rng(5), 12))[:, 0]
+    alone = [mik.solve_ik_all(chain, pose) for pose in poses]
+    for workers in (1, 3):
+        together = mik.solve_ik_all_batch(chain, poses, workers=workers)
+        for one, other in zip(alone, together, strict=True):
+            assert_array_equal(one.q, other.q)
+            assert one.complete == other.complete
+    with pytest.raises(InvalidTarget, match="target 1"):
+        mik.solve_ik_all_batch(chain, [poses[0], "here"])
+    ended = mik.solve_ik_all_batch(chain, poses, workers=1, watch=lambda done: done.done >= 3)
+    assert [bool(len(one)) for one in ended] == [True] * 3 + [False] * 9
+    assert ended[-1].interrupted and not ended[0].interrupted
+
+
+def test_select_clearance_keeps_farther_from_obstacles_than_the_first_solution() -> None:
+    chain = chain_of("ur5")
+    robot = mik.load_robot("ur5")
+    world = mik.CollisionWorld(robot, [Obstacle("ball", Sphere(0.1), (0.35, 0.45, 0.9))])
+    x = np.array([0.3, -1.2, 1.4, -0.9, -1.5, 0.6])
+    goal = chain.placements(chain.q(x))[0]
+    first = mik.solve_ik(chain, goal, world=world)
+    most = mik.solve_ik(chain, goal, solver=mik.IKSolver(select="clearance"), world=world)
+    every = mik.solve_ik_all(chain, goal, world=world)
+    assert most.success
+    distances = [world.min_distance(q).distance for q in every]
+    assert world.min_distance(most.q).distance >= max(distances) - 1e-6
+    assert max(distances) >= world.min_distance(first.q).distance - 1e-6
+    with pytest.raises(InvalidSetting, match="give one"):
+        mik.solve_ik(chain, goal, solver=mik.IKSolver(select="clearance"))

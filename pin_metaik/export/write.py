@@ -1,0 +1,124 @@
+"""One arm's closed form as a file of C or Python: its numbers, the functions of the kernels, and what calls them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pin_metaik.arguments import checked
+from pin_metaik.errors import CannotExport
+from pin_metaik.export.drivers import PYTHON, C
+from pin_metaik.export.to_c import Translation
+from pin_metaik.export.to_python import python_of
+from pin_metaik.kinematics import Chain
+from pin_metaik.kinematics.kernel import layout
+from pin_metaik.output import writable
+
+ROWS = ("H1", "H2", "H3", "H4", "H5", "H6", "O1", "O1_O2", "UPPER", "FORE", "O4_O5", "O5_TIP", "AHEAD")
+ACROSS = ("ACROSS", "ACROSS_WORLD")
+ENTRIES = ("LEVEL", "SIDE_2", "SIDE_3")
+FAR = 1e9  # rad: where a joint without limits ends
+EXACT = 1e-6  # m and rad: how far an arm may be from its closed form, as nothing descends in exported code
+
+
+@checked
+def exported(chain: Chain, language: str = "c") -> str:
+    """The text of a program that has all configurations of an arm for a pose, without this package.
+
+    It has the functions of the compiled kernels, translated, with the arm's numbers in them: for C a function
+    ``arm_solve`` and no dependency but its mathematical library, for Python a function ``solve`` and none but the
+    standard library. Configurations are inside the limits, distinct, and within 1e-5 m and rad of the pose, those by
+    whole turns nearest to a guess.
+
+    Args:
+        chain: An arm with a closed form.
+        language: ``"c"`` or ``"python"``.
+
+    Raises:
+        CannotExport: The arm has no closed form, or is only nearly one that has; or there is no such language.
+    """
+    if language not in LANGUAGES:
+        raise CannotExport(f"there is no export to {language!r}; known: {', '.join(LANGUAGES)}")
+    proof = chain.form_proof
+    off = np.inf if proof is None else float(max(proof.deviation)) - layout.ROUNDING
+    if proof is None or off > EXACT:
+        raise CannotExport(
+            f"{chain.model.name!r} has no closed form to write: six turning joints, axes 2 and 3 parallel, axes 5 "
+            "and 6 meeting, and axis 4 either through that point, too, or parallel to axes 2 and 3, have one, as ur5, "
+            "puma560, rv7fl, z1 and kinova do"
+        )
+    return LANGUAGES[language](chain, _numbers(chain))
+
+
+@checked
+def write_export(chain: Chain, path: Path) -> None:
+    """Write it to a file; its ending says which language: .c or .py.
+
+    Raises:
+        CannotExport: As ``exported`` does, or the ending says nothing.
+        CannotWrite: The file cannot be written.
+    """
+    if path.suffix not in SUFFIXES:
+        raise CannotExport(f"the file's ending says the language, {' or '.join(SUFFIXES)}; got {path.name!r}")
+    writable(path).write_text(exported(chain, SUFFIXES[path.suffix]), encoding="utf-8")
+
+
+def _numbers(chain: Chain) -> dict[str, Any]:
+    """The value of each expression that names a constant in the kernels."""
+    from pin_metaik.export.sources import CONSTANTS
+
+    form = chain.form
+    rows = {f"form[{name}]": tuple(form[getattr(layout, name)].tolist()) for name in ROWS + ACROSS}
+    entries = {f"form[{name}]": float(form[getattr(layout, name)]) for name in ENTRIES}
+    return {**rows, **entries, **CONSTANTS, "ORIGIN": (0.0, 0.0, 0.0)}
+
+
+def _limits(chain: Chain) -> list[tuple[str, float, float]]:
+    """Name and limits of each joint, in the order in which a configuration has them."""
+    lower, upper = np.maximum(chain.limits.lower, -FAR), np.minimum(chain.limits.upper, FAR)
+    return list(zip(chain.names, lower.tolist(), upper.tolist(), strict=True))
+
+
+def _columns(chain: Chain) -> list[int]:
+    """The coordinate of each joint, from the base on."""
+    return [int(column) for column in chain.paths.wiring[:, layout.COLUMN]]
+
+
+def _as_c(chain: Chain, numbers: dict[str, Any]) -> str:
+    from pin_metaik.export.sources import FUNCTIONS, parsed
+
+    program, limits = Translation(numbers), _limits(chain)
+    for function in FUNCTIONS:
+        program.add(parsed(function))
+    return C.substitute(
+        name=chain.model.name,
+        joints=", ".join(name for name, _, _ in limits),
+        lower=", ".join(repr(lower) for _, lower, _ in limits),
+        upper=", ".join(repr(upper) for _, _, upper in limits),
+        columns=", ".join(map(str, _columns(chain))),
+        outside=repr(numbers["OUTSIDE"]),
+        structures="\n".join(program.structures.values()),
+        functions="\n\n".join(program.code),
+    )
+
+
+def _as_python(chain: Chain, numbers: dict[str, Any]) -> str:
+    from pin_metaik.export.sources import FUNCTIONS, parsed
+
+    limits = _limits(chain)
+    return PYTHON.substitute(
+        name=chain.model.name,
+        joints=", ".join(name for name, _, _ in limits),
+        lower=repr(tuple(lower for _, lower, _ in limits)),
+        upper=repr(tuple(upper for _, _, upper in limits)),
+        columns=repr(tuple(_columns(chain))),
+        outside=repr(numbers["OUTSIDE"]),
+        functions="\n\n\n".join(python_of(parsed(function), numbers) for function in FUNCTIONS),
+    )
+
+
+LANGUAGES: dict[str, Callable[[Chain, dict[str, Any]], str]] = {"c": _as_c, "python": _as_python}
+SUFFIXES = {".c": "c", ".py": "python"}
