@@ -1,4 +1,4 @@
-"""What compiling costs: every loop, what each kind of first solve needs, and the baseline against this processor's own.
+"""What compiling costs: by loop, by phase, by kind of first solve; and the baseline against this processor's own.
 
     python benchmarks/compiling.py --out docs/compiling.md
 
@@ -28,11 +28,33 @@ ROUNDS = 21  # blocks of each of the two
 
 LOOPS = """
 import json, time
+from collections import Counter
+from numba.core.codegen import CPUCodeLibrary, JITCodeLibrary
+from numba.core.compiler_machinery import PassManager
 from pin_metaik.compiled import ahead
+spent, inner = Counter(), [0.0]
+def count(owner, name, phase):  # its own time, without that of what it calls and is counted
+    plain = getattr(owner, name)
+    def timed(*arguments, **named):
+        began = time.process_time()
+        inner.append(0.0)
+        try:
+            return plain(*arguments, **named)
+        finally:
+            whole = time.process_time() - began
+            spent[phase(arguments)] += whole - inner.pop()
+            inner[-1] += whole
+    setattr(owner, name, timed)
+count(CPUCodeLibrary, "add_ir_module", lambda _: "LLVM's code as text, and read again")
+count(CPUCodeLibrary, "_optimize_functions", lambda _: "optimising functions")
+count(CPUCodeLibrary, "_optimize_final_module", lambda _: "optimising modules")
+count(JITCodeLibrary, "_finalize_specific", lambda _: "machine code")
+count(PassManager, "_runPass", lambda arguments: arguments[2].name().replace("_", " "))
 for loop in ahead.versions()[0]:
     began = time.process_time()
     loop.compile()
     print(json.dumps([loop.module, loop.name, loop.without, time.process_time() - began]), flush=True)
+print(json.dumps(spent))
 """
 
 KINDS = """
@@ -157,7 +179,8 @@ def label(module: str, name: str, without: bool) -> str:
 def measured(folder: Path, baseline: str) -> str:
     own = Place(folder / "own")
     other = Place(folder / "baseline", NUMBA_CPU_NAME=baseline, NUMBA_CPU_FEATURES="")
-    seconds = {label(*loop): time for *loop, time in own.lines(LOOPS)}
+    *loops, phases = own.lines(LOOPS)
+    seconds = {label(*loop): time for *loop, time in loops}
     kinds = {kind: [label(*loop) for loop in used] for kind, used in own.lines(KINDS)}
     found = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
     cpu = found[1] if found else platform.machine()
@@ -177,6 +200,10 @@ def measured(folder: Path, baseline: str) -> str:
     lines += ["", "| loop | s |", "|---|---|"]
     lines += [f"| `{loop}` | {time:.1f} |" for loop, time in sorted(seconds.items(), key=lambda item: -item[1])]
     lines += [f"| **all {len(seconds)}** | **{sum(seconds.values()):.0f}** |", ""]
+    lines += ["| phase of it, if a hundredth or more | s |", "|---|---|"]
+    long = [(phase, time) for phase, time in phases.items() if time > 0.01 * sum(seconds.values())]
+    lines += [f"| {phase} | {time:.1f} |" for phase, time in sorted(long, key=lambda item: -item[1])]
+    lines += [""]
     lines += [
         f"| `solve_ik`, {2000 * ROUNDS} random poses | time with code for {baseline}, over that with this processor's "
         "own | answers equal to the last bit | largest difference of a joint, rad |",

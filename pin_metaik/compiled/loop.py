@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import re
 import sys
-from collections.abc import Callable
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from functools import cache, cached_property
 from pathlib import Path
 from threading import Timer
@@ -26,6 +27,18 @@ NOTICE = (
     "pin_metaik: compiling inner loops for this machine, once; this takes ten to sixty seconds "
     "(`pin-metaik warm` compiles all of them ahead) ..."
 )
+
+
+@contextmanager
+def uncollected() -> Iterator[None]:
+    """Without Python's garbage collector: it took an eighth of compiling to look through what numba still uses."""
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            gc.enable()
 
 
 class Loop:
@@ -61,7 +74,8 @@ class Loop:
 
     def compiled(self, without: bool = False) -> Callable[..., Any]:
         """Numba's function, compiled now or read from the cache."""
-        with Pressed(held=True) as pressed:  # broken off, numba would compile nothing more in this process
+        # broken off, numba would compile nothing more in this process
+        with Pressed(held=True) as pressed, uncollected():
             loop = numba.njit(fastmath=LOOSE, no_cfunc_wrapper=True, **OPTIONS)(self.function)
             loop._cache = self.machine_code
             signature = self.signatures[without]
