@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import pin_metaik as mik
-from pin_metaik import collision, mobile, stewart
+from pin_metaik import collision, gui, mobile, stewart
 
 Floats = NDArray[np.float64]
 
@@ -95,6 +95,8 @@ def others() -> None:
     plan: mobile.PathPlan = mobile.plan_path(mobile.Scene((0.0, 0.0), (3.0, 0.0), square))
     mechanism: stewart.Mechanism = stewart.load_mechanism(stewart.mechanism_names()[0])
     print(plan.success, mechanism)
+    with gui.open_toolbox(port=0) as toolbox:
+        print(toolbox.url, toolbox.busy, toolbox.pids, len(toolbox.tabs))
 
 
 if __name__ == "__main__":
