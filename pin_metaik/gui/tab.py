@@ -173,16 +173,20 @@ class Tab:
     def state(self) -> tuple[str, dict[str, dict[str, Any]]]:
         """The page that is open, and what each page keeps."""
         with self.lock:
-            if self.page is not None:
-                self._kept[self.name] = self.page.kept()
+            self._remember()
             return self.name, {name: values for name, values in self._kept.items() if values}
 
     def _leave(self) -> None:
         """Close the page that is open, keeping what it keeps."""
-        if self.page is not None:
-            self._kept[self.name] = self.page.kept()
-            self._drop()
+        self._remember()
+        self._drop()
         self._clear()
+
+    def _remember(self) -> None:
+        """Keep what the page keeps; where it makes no sense, what it kept before."""
+        if self.page is not None:
+            with told(self.client, "What was typed is not kept"):
+                self._kept[self.name] = self.page.kept()
 
     def _build(self, entry: Entry, values: Mapping[str, Any]) -> None:
         """Open a page in the panel and in the scene."""

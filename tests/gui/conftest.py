@@ -1,4 +1,4 @@
-"""A toolbox and a Chromium for the tests of a module: one of each, and a fresh tab a test."""
+"""A toolbox and a Chromium for the tests of a module: one of each, and one tab in it, as opening one takes long."""
 
 from __future__ import annotations
 
@@ -62,9 +62,9 @@ def socket(toolbox: Any) -> Iterator[Any]:
     opened.close()
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def tab(toolbox: Any, chromium: Any) -> Iterator[Any]:
-    """A tab with the first page; nothing that it asks for leaves this machine."""
+    """A tab of a browser; nothing that it asks for leaves this machine."""
     browsing = benchmark("toolbox_browser")
     opened = browsing.Page(chromium, toolbox.url + browsing.COARSE, SMALL)
     yield opened
