@@ -57,7 +57,7 @@ def platforms(tab: Page) -> None:
     tab.see("dexterity nu")
     tab.open("Workspace")
     tab.click("Survey")
-    tab.see("characteristic length")
+    tab.see("lowest nu")
 
 
 def comparisons(tab: Page) -> None:
@@ -105,14 +105,14 @@ def main(names: list[str]) -> None:
     """Take the pictures."""
     with open_toolbox(port=0) as toolbox, sync_playwright() as playwright:
         browser: Any = launched(playwright)
+        tab = Page(browser, toolbox.url)
+        tab.dismiss()
         for name in names or list(SCENES):
-            tab = Page(browser, toolbox.url)
-            tab.dismiss()
             SCENES[name](tab)
             time.sleep(REST)
             (IMAGES / f"toolbox_{name}.png").write_bytes(compressed(tab.page.screenshot()))
             print(f"{name}: asked {', '.join(sorted(filter(None, tab.asked)))}; {len(tab.faults)} faults", flush=True)
-            tab.close()
+        tab.close()
         browser.close()
 
 
