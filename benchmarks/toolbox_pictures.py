@@ -14,17 +14,20 @@ from playwright.sync_api import sync_playwright
 from toolbox_browser import Page, launched
 
 from pin_metaik.gui import open_toolbox
+from pin_metaik.gui.kept import to_address
 
 IMAGES = Path(__file__).parents[1] / "docs" / "images"
 LARGEST = 150_000  # bytes
 COLOURS = 96
+TARGET = (0.45, 0.2, 0.5, 1.0, 0.0, 0.0, 0.0)  # x, y, z in m, and a quaternion x, y, z, w
 REST = 4.0  # s until the scene has come to rest
 
 
 def arms(tab: Page) -> None:
-    """A Panda with its target moved, and all joints to be seen."""
+    """A Panda at a target in front of it, with the tool pointing down, and its joints."""
+    tab.page.goto(tab.page.url.split("?")[0].rstrip("/") + to_address("arms", {"arms": {"target": TARGET}}))
+    tab.dismiss()
     tab.see("SOLVED")
-    tab.type_vector("x, y, z, m", (0.45, 0.2, 0.5))
     tab.open("Joints")
 
 
@@ -106,7 +109,6 @@ def main(names: list[str]) -> None:
     with open_toolbox(port=0) as toolbox, sync_playwright() as playwright:
         browser: Any = launched(playwright)
         tab = Page(browser, toolbox.url)
-        tab.dismiss()
         for name in names or list(SCENES):
             SCENES[name](tab)
             time.sleep(REST)
