@@ -43,11 +43,10 @@ def metaheuristics(tab: Page) -> None:
 
 
 def paths(tab: Page) -> None:
-    """Ten obstacles, the shortest path, and a robot that drives along it."""
+    """Obstacles by number and seed, the shortest path, and a robot that drives along it."""
     tab.choose("Page", "Path planning")
     tab.see("Quickest motion along the shortest path")
-    tab.choose("From the list", "ten_obstacles")
-    tab.click("Take this map")
+    tab.click("Random map")
     tab.see("SHORTEST")
     tab.click("Plan a motion")
     tab.see("with a stop at every corner")
