@@ -79,7 +79,7 @@ def size_of_extra() -> tuple[float, float]:
 def measured(code: str) -> tuple[float, float, bool]:
     """Seconds on the clock and of the processor of some code in a fresh process, and whether it imports viser."""
     done = subprocess.run([sys.executable, "-c", START.format(code)], capture_output=True, text=True, check=True)
-    clock, processor, imported = done.stdout.split()
+    clock, processor, imported = done.stdout.splitlines()[0].split()
     return float(clock), float(processor), imported == "True"
 
 

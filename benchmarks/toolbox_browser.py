@@ -80,14 +80,6 @@ class Page:
         box.fill(value)
         box.press("Enter")
 
-    def type_vector(self, label: str, values: tuple[float, ...]) -> None:
-        """Type into the inputs of a vector."""
-        first = self.page.get_by_label(label, exact=True).first
-        boxes = first.locator("xpath=ancestor::div[.//input[2]][1]//input")
-        for number, value in enumerate(values):
-            boxes.nth(number).fill(str(value))
-            boxes.nth(number).press("Enter")
-
     def wait_until(self, met: Callable[[], bool]) -> None:
         """Wait until something is so."""
         end = time.monotonic() + WAIT / 1e3

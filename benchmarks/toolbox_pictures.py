@@ -14,17 +14,20 @@ from playwright.sync_api import sync_playwright
 from toolbox_browser import Page, launched
 
 from pin_metaik.gui import open_toolbox
+from pin_metaik.gui.kept import to_address
 
 IMAGES = Path(__file__).parents[1] / "docs" / "images"
 LARGEST = 150_000  # bytes
 COLOURS = 96
+TARGET = (0.45, 0.2, 0.5, 1.0, 0.0, 0.0, 0.0)  # x, y, z in m, and a quaternion x, y, z, w
 REST = 4.0  # s until the scene has come to rest
 
 
 def arms(tab: Page) -> None:
-    """A Panda with its target moved, and all joints to be seen."""
+    """A Panda at a target in front of it, with the tool pointing down, and its joints."""
+    tab.page.goto(tab.page.url.split("?")[0].rstrip("/") + to_address("arms", {"arms": {"target": TARGET}}))
+    tab.dismiss()
     tab.see("SOLVED")
-    tab.type_vector("x, y, z, m", (0.45, 0.2, 0.5))
     tab.open("Joints")
 
 
@@ -40,11 +43,10 @@ def metaheuristics(tab: Page) -> None:
 
 
 def paths(tab: Page) -> None:
-    """Ten obstacles, the shortest path, and a robot that drives along it."""
+    """Obstacles by number and seed, the shortest path, and a robot that drives along it."""
     tab.choose("Page", "Path planning")
     tab.see("Quickest motion along the shortest path")
-    tab.choose("From the list", "ten_obstacles")
-    tab.click("Take this map")
+    tab.click("Random map")
     tab.see("SHORTEST")
     tab.click("Plan a motion")
     tab.see("with a stop at every corner")
@@ -57,7 +59,7 @@ def platforms(tab: Page) -> None:
     tab.see("dexterity nu")
     tab.open("Workspace")
     tab.click("Survey")
-    tab.see("characteristic length")
+    tab.see("lowest nu")
 
 
 def comparisons(tab: Page) -> None:
@@ -105,14 +107,13 @@ def main(names: list[str]) -> None:
     """Take the pictures."""
     with open_toolbox(port=0) as toolbox, sync_playwright() as playwright:
         browser: Any = launched(playwright)
+        tab = Page(browser, toolbox.url)
         for name in names or list(SCENES):
-            tab = Page(browser, toolbox.url)
-            tab.dismiss()
             SCENES[name](tab)
             time.sleep(REST)
             (IMAGES / f"toolbox_{name}.png").write_bytes(compressed(tab.page.screenshot()))
             print(f"{name}: asked {', '.join(sorted(filter(None, tab.asked)))}; {len(tab.faults)} faults", flush=True)
-            tab.close()
+        tab.close()
         browser.close()
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 import pin_metaik as mik
-from pin_metaik import collision, export, mobile, reachable, stewart
+from pin_metaik import collision, export, gui, mobile, reachable, stewart
 
 Floats = NDArray[np.float64]
 
@@ -105,6 +105,8 @@ def others() -> None:
     plan: mobile.PathPlan = mobile.plan_path(mobile.Scene((0.0, 0.0), (3.0, 0.0), square))
     mechanism: stewart.Mechanism = stewart.load_mechanism(stewart.mechanism_names()[0])
     print(plan.success, mechanism)
+    with gui.open_toolbox(port=0) as toolbox:
+        print(toolbox.url, toolbox.busy, toolbox.pids, len(toolbox.tabs))
 
 
 if __name__ == "__main__":

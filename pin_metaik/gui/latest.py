@@ -10,7 +10,7 @@ T = TypeVar("T")
 
 
 class Latest(Generic[T]):
-    """A slot for one request, and the thread that takes it.
+    """A slot for one request, and the thread that takes it, from the first one on.
 
     A request that waits is replaced by a newer one, so that what is answered is never older than one piece of work.
 
@@ -23,13 +23,15 @@ class Latest(Generic[T]):
         self._waiting: list[T] = []
         self._closed = False
         self._changed = threading.Condition()
-        self._thread = threading.Thread(target=self._run, name="newest request", daemon=True)
-        self._thread.start()
+        self._thread: threading.Thread | None = None
 
     def ask(self, request: T) -> None:
         """Work on this next, in place of what waits."""
         with self._changed:
             self._waiting[:] = [request]
+            if self._thread is None and not self._closed:
+                self._thread = threading.Thread(target=self._run, name="newest request", daemon=True)
+                self._thread.start()
             self._changed.notify()
 
     def close(self) -> None:

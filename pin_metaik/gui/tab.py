@@ -9,11 +9,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.errors import InvalidSetting, MetaIKError, UnknownName
 from pin_metaik.gui import kept
 from pin_metaik.gui.page import Entry, Page
 from pin_metaik.gui.uploads import received
-from pin_metaik.gui.words import FOLDER, say, told
+from pin_metaik.gui.words import FOLDER, RED, in_words, say, told
 from pin_metaik.processes import Crew, Run, Told, Work
 
 ROOT = "/page"
@@ -72,14 +72,12 @@ class Tab:
             self._opened += 1
             self.name, entry = name, self._pages[name]
             self._chosen.value = entry.title
-            self._panel = self.client.gui.add_folder(None, order=1.0)
-            self.client.scene.add_frame(ROOT, show_axes=False)
-            with self._panel:
-                try:
-                    self.page = entry.open(self, self._kept.get(name, {}))
-                except InvalidSetting as error:  # of what it kept
-                    say(self.client, entry.title, f"{error}; the page opens as new", "red")
-                    self.page = entry.open(self, {})
+            try:
+                self._build(entry, self._kept.get(name, {}))
+            except MetaIKError as error:  # of what it kept
+                say(self.client, entry.title, f"{in_words(error)}; the page opens as new", RED)
+                self._clear()
+                self._build(entry, {})
 
     def show_with(self, name: str, values: Mapping[str, Any]) -> None:
         """Open a page with these values in place of what it kept."""
@@ -175,15 +173,30 @@ class Tab:
     def state(self) -> tuple[str, dict[str, dict[str, Any]]]:
         """The page that is open, and what each page keeps."""
         with self.lock:
-            if self.page is not None:
-                self._kept[self.name] = self.page.kept()
+            self._remember()
             return self.name, {name: values for name, values in self._kept.items() if values}
 
     def _leave(self) -> None:
         """Close the page that is open, keeping what it keeps."""
+        self._remember()
+        self._drop()
+        self._clear()
+
+    def _remember(self) -> None:
+        """Keep what the page keeps; where it makes no sense, what it kept before."""
         if self.page is not None:
-            self._kept[self.name] = self.page.kept()
-            self._drop()
+            with told(self.client, "What was typed is not kept"):
+                self._kept[self.name] = self.page.kept()
+
+    def _build(self, entry: Entry, values: Mapping[str, Any]) -> None:
+        """Open a page in the panel and in the scene."""
+        self._panel = self.client.gui.add_folder(None, order=1.0)
+        self.client.scene.add_frame(ROOT, show_axes=False)
+        with self._panel:
+            self.page = entry.open(self, values)
+
+    def _clear(self) -> None:
+        """Take away what the page has in the panel and in the scene."""
         if self._panel is not None:
             self._panel.remove()
             self._panel = None

@@ -229,6 +229,7 @@ class Crew:
             if run.over or process.run is not run:
                 return
             process.run = None
+            self._processes.remove(process)  # before it is gone: nobody shall be given to it meanwhile
         process.end()
         run.finish(Stage.ENDED)
 

@@ -1,4 +1,4 @@
-"""A toolbox and a Chromium for the tests of a module: one of each, and a fresh tab a test."""
+"""A toolbox and a Chromium for the tests of a module: one of each, and one tab in it, as opening one takes long."""
 
 from __future__ import annotations
 
@@ -38,18 +38,13 @@ def benchmark(name: str) -> ModuleType:
 
 
 @pytest.fixture(scope="module")
-def chromium() -> Iterator[Any]:
-    """Debian's Chromium, driven by Playwright."""
-    playwright, browsing = pytest.importorskip("playwright.sync_api"), benchmark("toolbox_browser")
-    found = browsing.chromium_path()
-    if found is None and os.environ.get("PIN_METAIK_REQUIRE_CHROMIUM") == "1":
-        pytest.fail("PIN_METAIK_REQUIRE_CHROMIUM=1 and there is no chromium")
-    if found is None:
-        pytest.skip("no chromium here")
-    with playwright.sync_playwright() as started:
-        browser = browsing.launched(started)
-        yield browser
-        browser.close()
+def chromium(browser: list[str]) -> Iterator[Any]:
+    """Debian's Chromium, driven by Playwright; ``browser`` says whether it is there."""
+    load = importlib.import_module if os.environ.get("PIN_METAIK_REQUIRE_CHROMIUM") == "1" else pytest.importorskip
+    with load("playwright.sync_api").sync_playwright() as started:
+        opened = benchmark("toolbox_browser").launched(started)
+        yield opened
+        opened.close()
 
 
 @pytest.fixture
@@ -60,9 +55,9 @@ def socket(toolbox: Any) -> Iterator[Any]:
     opened.close()
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def tab(toolbox: Any, chromium: Any) -> Iterator[Any]:
-    """A tab with the first page; nothing that it asks for leaves this machine."""
+    """A tab of a browser; nothing that it asks for leaves this machine."""
     browsing = benchmark("toolbox_browser")
     opened = browsing.Page(chromium, toolbox.url + browsing.COARSE, SMALL)
     yield opened

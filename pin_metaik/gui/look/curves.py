@@ -15,9 +15,9 @@ Curves = Mapping[str, tuple[ArrayLike, ArrayLike]]
 
 
 def aligned(curves: Curves) -> tuple[NDArray[np.float64], ...]:
-    """x and the y of each curve at every x that any of them has: uPlot takes one x for all.
+    """x and the y of each curve at every x that any of them has: uPlot takes one x for all, and no gaps.
 
-    Between two of its points, and after its last, a curve has the value of the point before; NaN before its first.
+    Between two of its points, and after its last, a curve has the value of the point before; before its first, of that.
     """
     points = [(np.asarray(x, dtype=float), np.asarray(y, dtype=float)) for x, y in curves.values()]
     xs = np.unique(np.concatenate([x for x, _ in points] or [np.zeros(0)]))
@@ -25,9 +25,17 @@ def aligned(curves: Curves) -> tuple[NDArray[np.float64], ...]:
         xs = np.array([0.0, 1.0]) if not len(xs) else np.array([xs[0], xs[0] + 1.0])
     columns = [xs]
     for x, y in points:
-        index = np.searchsorted(x, xs, side="right") - 1
-        columns.append(np.where(index >= 0, y[np.maximum(index, 0)], np.nan) if len(x) else np.full(len(xs), np.nan))
+        before = np.maximum(np.searchsorted(x, xs, side="right") - 1, 0)
+        columns.append(y[before] if len(x) else np.zeros(len(xs)))
     return tuple(columns)
+
+
+def drawable(columns: tuple[NDArray[np.float64], ...], log: bool) -> tuple[NDArray[np.float64], ...]:
+    """The same with what an axis cannot show, infinite, or not above zero on a logarithmic one, at its edge."""
+    values = np.concatenate(columns[1:])
+    shown = values[np.isfinite(values) & ((values > 0.0) | (not log))]
+    low, high = (shown.min(), shown.max()) if len(shown) else (1.0, 1.0)
+    return columns[0], *(np.clip(np.nan_to_num(y, nan=low), low, high) for y in columns[1:])
 
 
 def series_of(names: Sequence[str], x: str) -> tuple[dict[str, Any], ...]:
@@ -56,16 +64,14 @@ class CurvePlot:
         scales = {"x": {"time": False}, "y": {"distr": 3} if log else {}}
         self._log = log
         self._plot = gui.add_uplot(
-            aligned({"": ([], [])}), series_of([y], x), scales=scales, axes=axes, height=height, title=y
+            drawable(aligned({"": ([], [])}), log), series_of([y], x), scales=scales, axes=axes, height=height, title=y
         )
 
     def show(self, curves: Curves) -> None:
         """Show these curves."""
         if not curves:
             return
-        data = aligned(curves)
-        if self._log:
-            data = (data[0], *(np.where(y > 0, y, np.nan) for y in data[1:]))
+        data = drawable(aligned(curves), self._log)
         series = series_of(list(curves), self._x)
         if len(series) != len(self._plot.series):
             self._plot.series = series

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Mapping
 from dataclasses import replace
@@ -26,7 +27,7 @@ from pin_metaik.gui.words import in_words, say, told
 from pin_metaik.ik import IKSolutions
 
 GHOST, OTHERS = (120, 160, 210), (150, 150, 160)
-GRID = (0.5, 12)  # cells of half a metre
+FIELD = math.radians(45.0)  # of view, from top to bottom
 
 
 class ArmsPage:
@@ -169,9 +170,10 @@ class ArmsPage:
 
     def _aim_camera(self, size: float) -> None:
         camera = self._tab.client.camera
+        camera.fov = FIELD
         camera.up_direction = (0.0, 0.0, 1.0)
-        camera.position = (1.5 * size, 1.3 * size, 1.2 * size)
-        camera.look_at = (0.0, 0.0, 0.35 * size)
+        camera.position = (1.7 * size, 1.5 * size, 1.2 * size)
+        camera.look_at = (0.0, 0.0, 0.4 * size)
 
     def _tip(self) -> pin.SE3:
         """Pose of the tip where the robot is."""

@@ -10,6 +10,7 @@ import numpy as np
 import pinocchio as pin
 
 from pin_metaik.compare import CASES, Results, Task, read_results, summarise
+from pin_metaik.compare.folder.manifest import MANIFEST
 from pin_metaik.compare.report.parts import Value
 from pin_metaik.compare.report.worst import worst
 from pin_metaik.compare.results.statistics import ecdf
@@ -54,9 +55,8 @@ class ComparisonsPage:
         """See ``Page``. There is no work."""
 
     def _open(self, meant: Path) -> None:
-        manifests = sorted(meant.parent.rglob("manifest.json"))
-        folder = manifests[0].parent if manifests else meant.parent
-        self._results = read_results(folder)
+        manifests = sorted(self._tab.folder.rglob(MANIFEST), key=lambda path: path.stat().st_mtime)
+        self._results = read_results(manifests[-1].parent if manifests else meant.parent)
         self._furnish(self._results)
 
     def _furnish(self, results: Results) -> None:

@@ -68,8 +68,9 @@ class MapEditor:
         self._changed(world)
 
     def close(self) -> None:
-        """Hear no more clicks."""
-        self._tab.client.scene.remove_click_callback(self._click)
+        """Hear no more clicks; a tab that is gone has none."""
+        if not self._tab.closed:
+            self._tab.client.scene.remove_click_callback(self._click)
 
     def _clicked(self, event: Any) -> None:
         place = on_ground(event.ray_origin, event.ray_direction)
