@@ -45,9 +45,7 @@ class Question:
         """What to ask, in a world that stands elsewhere."""
         moved = pin.SE3.Identity() if base is None else base
         return [
-            mik.Target(
-                moved * pin.SE3(pose), frame, position_tolerance=self.near, orientation_tolerance=self.aligned
-            )
+            mik.Target(moved * pin.SE3(pose), frame, position_tolerance=self.near, orientation_tolerance=self.aligned)
             for frame, pose in zip(self.chain.frames, self.poses, strict=True)
         ]
 

@@ -153,7 +153,9 @@ def _pieces(text: str) -> Iterator[tuple[int, str]]:
 
 
 def _geojson(mapping: Any, place: str) -> Iterator[Found]:
-    match mapping.get("type") if isinstance(mapping, Mapping) else mapping:
+    match mapping.get("type") if isinstance(mapping, Mapping) else None:
+        case _ if not isinstance(mapping, Mapping):
+            raise InvalidGeometry(f"{place} is no GeoJSON object, but {shown(mapping)}")
         case "FeatureCollection":
             for i, feature in enumerate(_members(mapping, "features", place)):
                 yield from _geojson(feature, f"{place} feature {i}")
