@@ -126,8 +126,8 @@ def feasible(chain: mik.Chain, rng: np.random.Generator, near: float, aligned: f
     poses = chain.poses(coordinates(chain, family, rng))[0].copy()
     if rng.random() < 0.5:
         for pose in poses:
-            pose[:3, :3] = pose[:3, :3] @ pin.exp3(aligned * direction(rng))
-            pose[:3, 3] += near * direction(rng)
+            pose[:3, :3] = pose[:3, :3] @ pin.exp3((aligned - ROUNDING) * direction(rng))
+            pose[:3, 3] += (near - ROUNDING) * direction(rng)
     return poses
 
 
