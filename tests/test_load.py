@@ -32,7 +32,13 @@ def test_eight_threads_on_one_chain_and_one_world_get_the_answers_of_one() -> No
     def asked(i: int) -> tuple[object, ...]:
         free = mik.solve_ik(chain, poses[i], world=world, solver=mik.IKSolver(budget=mik.Budget(evaluations=300)))
         alone = mik.solve_ik(chain, poses[i])
-        return free.q.tobytes(), free.status, alone.q.tobytes(), world.in_collision(Q[i]), world.min_distance(Q[i]).distance
+        return (
+            free.q.tobytes(),
+            free.status,
+            alone.q.tobytes(),
+            world.in_collision(Q[i]),
+            world.min_distance(Q[i]).distance,
+        )
 
     one = list(map(asked, range(len(X))))
     for _ in range(2):
