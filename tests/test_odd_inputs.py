@@ -136,6 +136,9 @@ def test_robots_whose_elements_or_names_no_parser_takes_are_refused(tmp_path: Pa
     (tmp_path / "r.urdf").write_bytes(URDF.replace(b"</robot>", b"<x>" * 500 + b"</x>" * 500 + b"</robot>"))
     with pytest.raises(InvalidModel, match="nested too deeply"):
         mik.load_robot(tmp_path / "r.urdf")
+    (tmp_path / "r.urdf").write_bytes(URDF.replace(b'<parent link="base"/>', b'<parent link="arm"/>'))
+    with pytest.raises(InvalidModel, match="hang on no root, but on each other: arm, hand, tool, tip"):
+        mik.load_robot(tmp_path / "r.urdf")
     (tmp_path / "r.xml").write_bytes(MJCF.replace(b'class="c" size', b'class="other" size'))
     with pytest.raises(InvalidModel, match=r"is not MJCF that can be read|cannot be loaded"):
         _ = mik.load_robot(tmp_path / "r.xml").collision_model
