@@ -1,4 +1,4 @@
-"""What is promised, by which tests it is held, and how far each was looked at: writes ``docs/trust.md`` from the pages.
+"""What is promised, which tests hold it, and how far each was looked at: writes ``docs/trust.md`` from other pages.
 
 python benchmarks/trust.py [--out PAGE]
 """
@@ -14,8 +14,8 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 OUT = ROOT / "docs" / "trust.md"
 TITLE = "What we promise, and how it is tested"
-BEFORE = """Every promise has tests, which `make test` runs in minutes on every machine, and most have a program that asks
-the same until nothing is left to find (`make soak`). What came of its longest run is a page that the program wrote;
+BEFORE = """Every promise has tests, which `make test` runs in minutes on every machine, and most have a program
+that asks the same until nothing is left to find (`make soak`). What came of its longest run is a page that the program wrote;
 this page takes its figures from those."""
 AFTER = """What is not promised: real time (calls take microseconds to milliseconds, by distributions that the pages on
 speed have), the same bits on processors of another kind, and that a search with a budget finds what exists."""
