@@ -15,8 +15,8 @@ ROOT = Path(__file__).parents[1]
 OUT = ROOT / "docs" / "trust.md"
 TITLE = "What we promise, and how it is tested"
 BEFORE = """Every promise has tests, which `make test` runs in minutes on every machine, and most have a program
-that asks the same until nothing is left to find (`make soak`). What came of its longest run is a page that the program wrote;
-this page takes its figures from those."""
+that asks the same until nothing is left to find (`make soak`). What came of its longest run is a page that the
+program wrote; this page takes its figures from those."""
 AFTER = """What is not promised: real time (calls take microseconds to milliseconds, by distributions that the pages on
 speed have), the same bits on processors of another kind, and that a search with a budget finds what exists."""
 

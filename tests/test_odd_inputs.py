@@ -149,7 +149,7 @@ def test_robots_whose_elements_or_names_no_parser_takes_are_refused(tmp_path: Pa
 
 def test_geojson_that_holds_what_is_no_object_is_refused(tmp_path: Path) -> None:
     (tmp_path / "p.geojson").write_text('{"type": "FeatureCollection", "features": ["Feature"]}')
-    with pytest.raises(InvalidGeometry, match="is no GeoJSON object"):
+    with pytest.raises(InvalidGeometry, match="is GeoJSON of type 'Feature'"):
         mobile.load_scene(tmp_path / "p.geojson", (0, 0), (1, 1))
 
 
