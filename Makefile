@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 
-.PHONY: demo test lint tests quick urdf docs wheel check-release clean
+.PHONY: demo test lint tests quick soak urdf docs wheel check-release clean
 
 demo: $(VENV)/installed
 	$(BIN)/pin-metaik demo
@@ -21,6 +21,14 @@ tests: $(VENV)/developed
 
 quick: $(VENV)/developed
 	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not slow"
+
+# Hours: what the tests ask a few times, asked until nothing is left to find. Pages in benchmarks/ say what came of it.
+soak: $(VENV)/developed
+	$(BIN)/python -m pytest -n 2 tests/properties --hypothesis-profile=deep
+	$(BIN)/python benchmarks/claims.py
+	$(BIN)/python benchmarks/fuzz.py
+	$(BIN)/python benchmarks/faults.py
+	$(BIN)/python benchmarks/load.py
 
 urdf: $(VENV)/installed
 	$(BIN)/pin-metaik urdf --all

@@ -22,18 +22,18 @@ class Hangs(BaseException):
 
 @contextlib.contextmanager
 def alarm(seconds: float) -> Iterator[None]:
-    """Raise ``Hangs`` in what takes longer."""
+    """Raise ``Hangs`` in what takes longer, by the time that the processor worked on it."""
 
     def ring(*_: object) -> None:
         raise Hangs
 
-    before = signal.signal(signal.SIGALRM, ring)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    before = signal.signal(signal.SIGPROF, ring)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, before)
 
 
 @contextlib.contextmanager
@@ -60,7 +60,7 @@ def apart(count: int, call: Callable[[int], T], ended: Callable[[int, str], T], 
         count: How many calls.
         call: Made in a child of this process, as it is now; what it gives can be pickled.
         ended: What a call counts as that ended its process, with how, or was ended because it did not come back.
-        late: Time after which a call that cannot be interrupted from within is ended, s.
+        late: Time after which a call that nothing is heard of is ended, s.
         more: Bytes of address space that a child may take beyond what this process has; 0: as many as it likes.
     """
     done: list[T] = []
@@ -114,6 +114,6 @@ def _how(status: int, late: float) -> str:
 
 
 def seconds_of(call: Callable[[], T]) -> tuple[T, float]:
-    """What a call gives, and how long it took, s."""
-    began = time.perf_counter()
-    return call(), time.perf_counter() - began
+    """What a call gives, and for how long the processor worked on it, s."""
+    began = time.process_time()
+    return call(), time.process_time() - began

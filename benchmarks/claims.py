@@ -126,8 +126,8 @@ def feasible(chain: mik.Chain, rng: np.random.Generator, near: float, aligned: f
     poses = chain.poses(coordinates(chain, family, rng))[0].copy()
     if rng.random() < 0.5:
         for pose in poses:
-            pose[:3, :3] = pose[:3, :3] @ pin.exp3(aligned * direction(rng))
-            pose[:3, 3] += near * direction(rng)
+            pose[:3, :3] = pose[:3, :3] @ pin.exp3((aligned - ROUNDING) * direction(rng))
+            pose[:3, 3] += (near - ROUNDING) * direction(rng)
     return poses
 
 
@@ -178,13 +178,13 @@ def main() -> None:
     parser.add_argument("--models", type=int, default=200)
     parser.add_argument("--each", type=int, default=4_000, help="targets of each random model")
     parser.add_argument("--robots-each", type=int, default=9_000, help="targets of each robot")
+    parser.add_argument("--robots", nargs="*", help="by name; default: all")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--kept", type=Path, help="file that finished models are kept in")
     parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".md"))
     given = parser.parse_args()
-    names = dict.fromkeys(map(str, range(given.models)), given.each) | dict.fromkeys(
-        mik.robot_names(), given.robots_each
-    )
+    robots = mik.robot_names() if given.robots is None else given.robots
+    names = dict.fromkeys(map(str, range(given.models)), given.each) | dict.fromkeys(robots, given.robots_each)
     found = all_counted(names, given.workers, given.kept)
     given.out.write_text("\n\n".join(page(found)) + "\n", encoding="utf-8")
 

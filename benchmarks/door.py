@@ -37,7 +37,7 @@ from hypothesis import strategies as st
 import pin_metaik as mik
 from pin_metaik.errors import MetaIKError
 
-LATE = 15.0  # s; a call that takes longer hangs
+LATE = 15.0  # s of processor time; a call that takes longer hangs
 ROOM = 12 << 30  # bytes of address space: what asks for more gets a MemoryError instead of the machine
 
 INNER = {(f"refine.{kind}", step) for kind in ("LM", "QP", "SDLS", "Newton", "Transpose") for step in ("step", "steps")}
@@ -324,7 +324,7 @@ def sweep(todo: list[Call]) -> list[Knock]:
         door, odd = todo[i]
         return Knock(0.0, False, Fault(door.name, changed(odd), how, ""))
 
-    return apart(len(todo), lambda i: knock(*todo[i]), ended, 2.0 * LATE)
+    return apart(len(todo), lambda i: knock(*todo[i]), ended, 10.0 * LATE)
 
 
 def drawn_calls(count: int, seed: int) -> list[Call]:

@@ -32,7 +32,8 @@ from sections import conditions
 
 import pin_metaik as mik
 
-LATE = 5.0  # s; a call that takes longer hangs
+LATE = 5.0  # s of processor time; a call that takes longer hangs
+SILENT = 120.0  # s after which a call that nothing is heard of is ended
 ROOM = 1 << 30  # bytes that reading may take
 SHARE = 2_000  # inputs that one child reads at most
 LONGEST = 2_000  # characters of a message
@@ -73,7 +74,7 @@ def fuzz(reader: Reader, numbers: range) -> Counts:
                 len(part),
                 lambda i, path=path, part=part: _outcome(reader, path, part[i]),  # type: ignore[misc]
                 lambda _, how: (how, 0.0),
-                2.0 * LATE,
+                SILENT,
                 ROOM,
             )
         for number, (what, seconds) in zip(part, outcomes, strict=True):

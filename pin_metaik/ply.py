@@ -72,7 +72,7 @@ def read_ply(path: Path, error: Error) -> tuple[Numbers, NDArray[np.int64]]:
         raise error(f"cannot read {path}: {reason.strerror}") from None
     except (KeyError, StopIteration):
         raise error(f"{path} is no mesh in PLY: it lacks x, y, z, corners, or a type is unknown") from None
-    except ValueError as reason:
+    except (ValueError, OverflowError) as reason:  # the latter of a length that is infinite
         raise error(f"{path} is no mesh in PLY: {reason}") from None
     parts = [(face[0], b, c) for face in faces for b, c in zip(face[1:-1], face[2:], strict=True)]
     corners = np.array(parts, dtype=float).reshape(-1, 3)

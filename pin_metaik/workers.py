@@ -6,6 +6,7 @@ import contextlib
 import threading
 import warnings
 from collections.abc import Iterator, Sequence
+from concurrent.futures import CancelledError
 from multiprocessing import resource_tracker
 from multiprocessing.util import Finalize
 from typing import Any, Literal, Protocol, TypeAlias, TypeVar
@@ -57,7 +58,7 @@ def worked(items: Sequence[WorkItem[T]], jobs: int, backend: Backend, scheduler:
 
     Raises:
         MissingExtra: joblib or distributed is not installed.
-        InvalidSetting: The scheduler cannot be reached.
+        InvalidSetting: The scheduler cannot be reached, or has gone.
     """
     with contextlib.ExitStack() as stack:
         chosen: dict[str, Any] = {"backend": backend, "n_jobs": jobs}
@@ -71,6 +72,13 @@ def worked(items: Sequence[WorkItem[T]], jobs: int, backend: Backend, scheduler:
             pressed.check()
             for result in results:  # noqa: UP028  # `yield from` would close them before the lines below
                 yield result
+        except (OSError, TimeoutError, CancelledError) as error:
+            if backend != "dask":
+                raise
+            raise InvalidSetting(
+                f"the Dask scheduler at {scheduler} has gone ({type(error).__name__}): what is done is kept, and the "
+                "same call goes on with another one"
+            ) from None
         except BaseException:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # joblib's, of tasks that an interrupt leaves undone

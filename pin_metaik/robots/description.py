@@ -144,6 +144,10 @@ class Description:
             except (ValueError, RuntimeError) as error:
                 raise InvalidModel(f"{self.what} is not a valid URDF: {prints() or explain(error)}") from None
             printed = list(filter(None, [prints()]))
+        children = {joint.get("name", ""): child.get("link", "") for joint in motion.iterfind("joint")
+                    if (child := joint.find("child")) is not None}  # fmt: skip
+        if lost := [link for name, link in children.items() if not model.existFrame(name)]:
+            raise InvalidModel(f"{self.what} has links that hang on no root, but on each other: {', '.join(lost)}")
         if renamed:
             with_own_names(model)
         model, contradictions = coupled(model, couplings)

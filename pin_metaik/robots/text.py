@@ -14,6 +14,7 @@ from pathlib import Path
 from xml.parsers import expat
 
 from pin_metaik.errors import InvalidModel
+from pin_metaik.files import DEEPEST
 
 _MARKS = {
     b"\xef\xbb\xbf": "utf-8-sig",
@@ -93,11 +94,24 @@ def parsed(text: str, what: str) -> ET.Element:
     body = _AMPERSAND.sub("&amp;", _CONTROL.sub("", body))
     body = _VALUE.sub(lambda value: value.group().replace("<", "&lt;"), body)
 
-    builder = ET.TreeBuilder()
+    builder, deep = ET.TreeBuilder(), 0
+
+    def begin(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal deep
+        deep += 1
+        if deep > DEEPEST:
+            raise InvalidModel(f"{what} is not a URDF: elements are nested too deeply")
+        builder.start(tag, attributes)
+
+    def end_of(tag: str) -> None:
+        nonlocal deep
+        deep -= 1
+        builder.end(tag)
+
     parser = expat.ParserCreate()
     parser.buffer_text = True
-    parser.StartElementHandler = builder.start
-    parser.EndElementHandler = builder.end
+    parser.StartElementHandler = begin
+    parser.EndElementHandler = end_of
     parser.CharacterDataHandler = builder.data
     try:
         parser.Parse("\n" * text.count("\n", 0, start.start()) + body, True)

@@ -76,7 +76,7 @@ def questions(draw: st.DrawFn, most: int = MOST) -> Question:
     near, aligned = (10.0 ** rnd.uniform(-7.0, -2.0) for _ in range(2))
     if rnd.random() < 0.5:
         for pose in poses:
-            pose[:3, :3] = pose[:3, :3] @ pin.exp3(aligned * direction(rng))
-            pose[:3, 3] += near * direction(rng)
+            pose[:3, :3] = pose[:3, :3] @ pin.exp3((aligned - ROUNDING) * direction(rng))
+            pose[:3, 3] += (near - ROUNDING) * direction(rng)
     start = chain.q(chain.box.sample(rng, 1)[0]) if rnd.random() < 0.5 else None
     return Question(robot, chain, x, poses, near, aligned, start)

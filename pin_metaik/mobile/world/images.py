@@ -18,7 +18,8 @@ COMMENT = re.compile(rb"#[^\r\n]*")
 BETWEEN = rb"(?:\s|#[^\r\n]*[\r\n])+"
 HEADER = re.compile(rb"P[25]" + 2 * (BETWEEN + rb"(\d{1,9})") + BETWEEN + rb"(\d{1,9})(?:\s|#[^\r\n]*[\r\n])")
 DEEPEST = 65535  # the largest value of 16 bits
-MOST = 4096 * 4096  # pixels that are unpacked: a small file may say that it has billions
+MOST = 1 << 25  # numbers that pixels are unpacked to: a small file may say that it has billions
+GREY = ("1", "L", "I", "I;16", "I;16B", "I;16L", "F")
 FORMATS = ("PNG", "BMP", "TIFF", "GIF", "JPEG", "JPEG2000", "WEBP", "PPM", "PCX", "TGA", "ICO", "SGI")
 """Forms of images that are read: not those, as PostScript, that another program is run for."""
 
@@ -60,8 +61,8 @@ def read_image(path: Path) -> Pixels:
 
     try:
         with Image.open(path, formats=FORMATS) as image:
-            if image.width * image.height > MOST:
-                raise InvalidGeometry(f"{path} has {image.width} x {image.height} pixels: {MOST:,} at most can be read")
+            if image.width * image.height * (1 if image.mode in GREY else 4) > MOST:
+                raise ValueError(f"{image.width} x {image.height} pixels are too many; {MOST:,} grey ones are not")
             return _pixels(image)
     except UnidentifiedImageError:
         raise InvalidGeometry(f"{path} is not an image: a map is a PGM, a PNG or what else Pillow reads") from None

@@ -153,7 +153,8 @@ def _pieces(text: str) -> Iterator[tuple[int, str]]:
 
 
 def _geojson(mapping: Any, place: str) -> Iterator[Found]:
-    match mapping.get("type") if isinstance(mapping, Mapping) else mapping:
+    kind = mapping.get("type") if isinstance(mapping, Mapping) else mapping
+    match kind if isinstance(mapping, Mapping) else None:
         case "FeatureCollection":
             for i, feature in enumerate(_members(mapping, "features", place)):
                 yield from _geojson(feature, f"{place} feature {i}")
@@ -163,13 +164,13 @@ def _geojson(mapping: Any, place: str) -> Iterator[Found]:
         case "GeometryCollection":
             for i, geometry in enumerate(_members(mapping, "geometries", place)):
                 yield from _geojson(geometry, f"{place} geometry {i}")
-        case str(kind) if kind in SIMPLE or kind in COLLECTED:
+        case str() if kind in SIMPLE or kind in COLLECTED:
             try:
                 geometry = shapely.from_geojson(json.dumps(mapping, allow_nan=False))
             except (shapely.errors.GEOSException, TypeError, ValueError, RecursionError) as error:
                 raise InvalidGeometry(f"{place} is not a GeoJSON {kind}: {error}") from None
             yield from _parts(geometry, place)
-        case kind:
+        case _:
             raise InvalidGeometry(f"{place} is GeoJSON of type {kind!r}: an obstacle is a {ACCEPTED}")
 
 

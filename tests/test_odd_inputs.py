@@ -1,0 +1,191 @@
+"""What reads files takes odd ones, or says in one line what is wrong; and the worst that were found, one by one."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from fuzz import elsewhere, fuzz
+from fuzz_readers import MJCF, OBJ, PLY, URDF, readers
+
+import pin_metaik as mik
+from pin_metaik import collision, learn, mobile
+from pin_metaik.collision.scene import read_points
+from pin_metaik.compare import read_results
+from pin_metaik.compare.folder.manifest import Manifest
+from pin_metaik.compare.folder.store import ROWS, Appender, read_rows
+from pin_metaik.errors import MOST, InvalidGeometry, InvalidModel, InvalidSetting, InvalidTable, MetaIKError
+from tests.compare.suites import SMALL
+
+INPUTS = 25  # of each reader; hundreds of thousands in the benchmark
+
+
+def test_odd_files_and_command_lines_lead_to_a_result_or_an_error_of_ours() -> None:
+    with elsewhere():
+        faults = {name: found for name, one in readers().items() if (found := fuzz(one, range(INPUTS)).faults)}
+    assert not faults
+
+
+@pytest.mark.parametrize("text", ["x" * 10**6, "\x1b[31mred\x1b[0m\nnext line", "\ud800", "ok"])
+def test_a_message_is_one_line_that_terminals_take(text: str) -> None:
+    error = MetaIKError(f"no robot named {text}")
+    assert str(error).isprintable()
+    assert len(str(error)) <= MOST
+    assert str(error).startswith("no robot named")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "error", "says"),
+    [
+        ("s.json", "[" * 500 + "]" * 500, InvalidGeometry, "nested too deeply"),
+        ("s.json", '{"obstacle": [{"name": "a", "shape": "box", "size": [1, 1, 1' + "0" * 400 + "]}]}", InvalidGeometry,
+         "more than 308 digits"),
+        ("s.toml", f"obstacle = 0x{'f' * 4000}", InvalidGeometry, "more than 308 digits"),
+    ],
+)  # fmt: skip
+def test_values_that_nothing_can_be_done_with_are_refused_where_they_are_read(
+    name: str, content: str, error: type[MetaIKError], says: str, tmp_path: Path
+) -> None:
+    (tmp_path / name).write_text(content)
+    with pytest.raises(error, match=says):
+        collision.load_scene(tmp_path / name)
+
+
+def test_a_table_with_numbers_beyond_all_robots_is_refused(tmp_path: Path) -> None:
+    text = mik.load_robot("rv7fl").source.read_text()
+    number = next(line for line in text.splitlines() if line.strip().startswith("a = ") or "a = " in line)
+    before, _, after = number.partition("a = ")
+    huge = f"{before}a = 1e200{after[len(after.split(',')[0]) :]}"
+    (tmp_path / "r.toml").write_text(text.replace(number, huge, 1))
+    with pytest.raises(InvalidTable, match="is beyond 1e"):
+        mik.load_robot(tmp_path / "r.toml")
+
+
+def test_aliases_that_stand_for_billions_of_values_are_refused_at_once(tmp_path: Path) -> None:
+    lines = [f"{b}: &{b} [{', '.join([f'*{a}'] * 9)}]" for a, b in zip("abcdefgh", "bcdefghi", strict=True)]
+    (tmp_path / "map.yaml").write_text("\n".join(["a: &a [x, x, x]", *lines, "image: *i"]))
+    with pytest.raises(InvalidGeometry, match="aliases stand for too many values"):
+        mobile.load_scene(tmp_path / "map.yaml", (0, 0), (1, 1))
+
+
+def test_an_image_that_is_small_and_says_it_has_billions_of_pixels_is_refused(tmp_path: Path) -> None:
+    from PIL import Image
+
+    Image.new("1", (60_000, 1_000)).save(tmp_path / "map.png")
+    (tmp_path / "map.yaml").write_text(
+        json.dumps({"image": "map.png", "resolution": 0.1, "origin": [0, 0, 0], "negate": 0, "occupied_thresh": 0.65,
+                    "free_thresh": 0.2})
+    )  # fmt: skip
+    assert (tmp_path / "map.png").stat().st_size < 100_000
+    with pytest.raises(InvalidGeometry, match="60000 x 1000 pixels are too many"):
+        mobile.load_scene(tmp_path / "map.yaml", (0, 0), (1, 1))
+
+
+def test_arrays_that_are_damaged_or_unpack_to_gigabytes_are_refused(tmp_path: Path) -> None:
+    with (
+        zipfile.ZipFile(tmp_path / "bomb.npz", "w", zipfile.ZIP_DEFLATED) as archive,
+        archive.open("w.npy", "w") as file,
+    ):
+        for _ in range(1_100):
+            file.write(bytes(1 << 20))
+    good = io.BytesIO()
+    np.save(good, np.eye(3))
+    (tmp_path / "torn.npy").write_bytes(good.getvalue()[:60])
+    (tmp_path / "vast.npy").write_bytes(good.getvalue().replace(b"(3, 3)", b"(3, 10000000000000)"))
+    with pytest.raises(InvalidSetting, match="unpacked it has more than 1,024 MiB"):
+        learn.load_regressor(tmp_path / "bomb.npz")
+    with pytest.raises(InvalidSetting, match="not a map"):
+        mik.Reachability.load(tmp_path / "torn.npy")
+    for name in ("torn.npy", "vast.npy"):
+        with pytest.raises(InvalidGeometry, match=r"is not a \.npy file of points"):
+            read_points(tmp_path / name)
+
+
+def test_a_mesh_in_ply_is_read_as_its_like_in_obj_and_wrong_corners_do_not_end_the_process(tmp_path: Path) -> None:
+    (tmp_path / "m.obj").write_bytes(OBJ)
+    (tmp_path / "m.ply").write_bytes(PLY)
+    header = PLY.partition(b"end_header\n")[0].replace(b"ascii", b"binary_big_endian") + b"end_header\n"
+    vertices, triangles = np.vstack([np.zeros(3), np.eye(3)]), [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    rows = b"".join(b"\x03" + np.array(face, ">i4").tobytes() for face in triangles)
+    (tmp_path / "b.ply").write_bytes(header + vertices.astype(">f4").tobytes() + rows)
+    text, binary = collision.Mesh.read(tmp_path / "m.ply", 0.5), collision.Mesh.read(tmp_path / "b.ply", 0.5)
+    for mesh in (text, binary):
+        np.testing.assert_array_equal(mesh.vertices, 0.5 * vertices)
+        np.testing.assert_array_equal(mesh.triangles, triangles)
+    volume = coal_volume(collision.Mesh.read(tmp_path / "m.obj", 0.5))
+    assert coal_volume(text) == pytest.approx(volume, abs=1e-12)
+    (tmp_path / "m.ply").write_bytes(PLY.replace(b"3 1 2 3", b"3 1 2 9"))
+    with pytest.raises(InvalidGeometry, match="corners are none of its 4 vertices"):
+        collision.Mesh.read(tmp_path / "m.ply")
+    (tmp_path / "r.urdf").write_bytes(URDF.replace(b"m.obj", b"m.ply"))
+    with pytest.raises(InvalidModel, match="corners are none of its 4 vertices"):
+        _ = mik.load_robot(tmp_path / "r.urdf").visual_model
+
+
+def coal_volume(mesh: collision.Mesh) -> float:
+    a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
+    return float((np.cross(a, b) * c).sum() / 6.0)
+
+
+def test_robots_whose_elements_or_names_no_parser_takes_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_bytes(URDF.replace(b"</robot>", b"<x>" * 500 + b"</x>" * 500 + b"</robot>"))
+    with pytest.raises(InvalidModel, match="nested too deeply"):
+        mik.load_robot(tmp_path / "r.urdf")
+    (tmp_path / "r.urdf").write_bytes(URDF.replace(b'<parent link="base"/>', b'<parent link="arm"/>'))
+    with pytest.raises(InvalidModel, match="hang on no root, but on each other: arm, hand, tool, tip"):
+        mik.load_robot(tmp_path / "r.urdf")
+    (tmp_path / "r.xml").write_bytes(MJCF.replace(b'class="c" size', b'class="other" size'))
+    with pytest.raises(InvalidModel, match=r"is not MJCF that can be read|cannot be loaded"):
+        _ = mik.load_robot(tmp_path / "r.xml").collision_model
+    (tmp_path / "r.xml").write_bytes(MJCF.replace(b'<body name="b"', b'<body name="\xff"'))
+    with pytest.raises(InvalidModel, match="is not MJCF that can be read"):
+        mik.load_robot(tmp_path / "r.xml")
+
+
+def test_geojson_that_holds_what_is_no_object_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "p.geojson").write_text('{"type": "FeatureCollection", "features": ["Feature"]}')
+    with pytest.raises(InvalidGeometry, match="is GeoJSON of type 'Feature'"):
+        mobile.load_scene(tmp_path / "p.geojson", (0, 0), (1, 1))
+
+
+@pytest.mark.parametrize("path", ["../elsewhere/r.urdf", "/etc/passwd", 3])
+def test_a_comparison_reads_robots_from_nowhere_but_its_folder(path: object) -> None:
+    values = {**Manifest.from_suite(SMALL).to_json(), "files": {"ur5": path}}
+    with pytest.raises(InvalidSetting, match="is kept in the folder"):
+        Manifest.from_json(json.loads(json.dumps(values)))
+
+
+@pytest.mark.parametrize("change", [{"robot": ["ur5"]}, {"evaluations": {}}, {"task": "one"}, {"x": 3}])
+def test_a_row_with_values_of_another_kind_is_none(change: dict[str, object], tmp_path: Path) -> None:
+    row = {"robot": "ur5", "case": "a", "method": "b", "task": 0, "seed": 0, "budget": 1, "solved": True, "met": True,
+           "claimed": True, "status": "SOLVED", "error": None, "position_error": 0.0, "orientation_error": 0.0,
+           "displacement": 0, "evaluations": 1, "x": [0, 1.5], "curve": None, "seconds": 0.1}  # fmt: skip
+    (tmp_path / ROWS).write_text(json.dumps(row) + "\n")
+    (trial,) = read_rows(tmp_path)
+    assert trial.x == (0, 1.5)
+    (tmp_path / ROWS).write_text(json.dumps({**row, **change}) + "\n")
+    with pytest.raises(InvalidSetting, match=r"line 1 of .* is no row"):
+        read_rows(tmp_path)
+    with pytest.raises(InvalidSetting, match="holds no comparison"):
+        read_results(tmp_path)
+    with Appender(tmp_path) as file:
+        file.add([trial])
+    assert (tmp_path / ROWS).read_bytes().count(b"\n") == 2
+
+
+def test_joints_that_a_chain_does_not_move_stand_inside_their_limits() -> None:
+    model = pin.Model()
+    kinds = (pin.JointModelTranslation(), pin.JointModelSphericalZYX(), pin.JointModelFreeFlyer(), pin.JointModelRZ())
+    for kind in kinds:  # all on the world: only the last one moves the tip
+        joint = model.addJoint(0, kind, pin.SE3.Identity(), f"joint_{model.njoints}")
+    model.lowerPositionLimit, model.upperPositionLimit = np.full(model.nq, 0.5), np.full(model.nq, 0.9)
+    model.addFrame(pin.Frame("tip", joint, 0, pin.SE3(np.eye(3), np.array([0.3, 0.0, 0.0])), pin.FrameType.OP_FRAME))
+    reference = mik.Chain(model, "tip").reference
+    assert reference[:9].tolist() == [0.5] * 9  # two joints of three, and where the floating one is
+    assert reference[9:13].tolist() == [0.0, 0.0, 0.0, 1.0]  # which way it points has no limits
+    assert reference[13] == 0.5

@@ -1,0 +1,60 @@
+"""What is installed, imported and asked of the network: the floors as they are written, little, and nothing."""
+
+import os
+import subprocess
+import sys
+import tomllib
+from importlib.metadata import version
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+LONGEST = 0.6  # s of processor time beyond what Pinocchio and numpy take to import; 0.2 where nothing else runs
+
+OFFLINE = """
+import runpy, sys
+
+def refuse(event, arguments):
+    if event in ("socket.connect", "socket.bind", "socket.sendto") and isinstance(arguments[1], tuple):
+        raise SystemExit(f"{event} {arguments[1]}")  # of a path is between processes here
+    if event in ("socket.getaddrinfo", "socket.gethostbyname", "urllib.Request", "webbrowser.open"):
+        raise SystemExit(f"{event} {arguments}")
+
+sys.addaudithook(refuse)
+sys.argv = sys.argv[1:]
+runpy.run_path(sys.argv[0], run_name="__main__")
+"""
+TRIES = "import socket; socket.create_connection(('127.0.0.1', 9))"
+
+
+def test_nothing_that_the_package_offers_asks_the_network(tmp_path: Path) -> None:
+    (tmp_path / "tries.py").write_text(TRIES)
+    for program, expected in ((tmp_path / "tries.py", 1), (ROOT / "tests" / "typed_program.py", 0)):
+        done = subprocess.run([sys.executable, "-c", OFFLINE, program], capture_output=True, text=True)
+        assert done.returncode == expected, done.stderr
+
+
+def test_importing_takes_little_longer_than_pinocchio() -> None:
+    def seconds(code: str) -> float:
+        before = os.times()
+        subprocess.run([sys.executable, "-c", code], check=True)
+        after = os.times()
+        return after.children_user + after.children_system - before.children_user - before.children_system
+
+    without = min(seconds("import numpy, pinocchio") for _ in range(2))
+    assert min(seconds("import pin_metaik") for _ in range(2)) - without < LONGEST
+
+
+def test_every_floor_is_met_here_and_printed_for_the_job_that_installs_it() -> None:
+    printed = subprocess.run(
+        [sys.executable, ROOT / ".github" / "floors.py"], capture_output=True, text=True, check=True
+    ).stdout
+    floors = dict(line.split("==") for line in printed.split())
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    for dependency in project["dependencies"]:
+        name, _, floor = dependency.partition(">=")
+        assert floor and floors[name] == floor, "a dependency without a floor"
+        assert numbers(version(name)) >= numbers(floor)
+
+
+def numbers(text: str) -> list[int]:
+    return [int(part) for part in text.split(".") if part.isdigit()]
