@@ -124,7 +124,6 @@ def self_motions(file: Path) -> None:
 PICTURES: dict[str, Callable[[Path], None]] = {
     "shelf": shelf,
     "self_motions": self_motions,
-    "mobile_trajectory": example("31"),
     "path_generations": printed("mobile", "evolve", "ten_obstacles", "--method", "pso", "-o", "it.png", made="it.png"),
     "servo_platform": printed("stewart", "show", "servo_sg90", "-o", "it.png", made="it.png"),
 }
