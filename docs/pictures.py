@@ -26,17 +26,6 @@ SAME = 0.04  # of the range of brightness, root mean square of the difference of
 THUMBNAIL = 96, 64  # pixels
 WAIT = 1200.0  # s for a browser that draws without a graphics card
 
-SINGULAR = """[workspace]
-x = [0, 0]
-y = [0, 0]
-z = [370, 370]
-counts = [1, 1, 1]
-steps = [21, 21, 41]
-roll = [-30, 30]
-pitch = [-30, 30]
-yaw = [-115, 115]
-"""
-
 
 def command(*words: object, cwd: Path) -> None:
     """Run ``pin-metaik`` in a folder."""
@@ -72,17 +61,6 @@ def shelf(file: Path) -> None:
             for process in (run, looks):
                 process.terminate()
                 process.wait()
-
-
-def example(number: str) -> Callable[[Path], None]:
-    """What an example draws."""
-
-    def draw(file: Path) -> None:
-        (script,) = (ROOT / "examples").glob(f"{number}_*.py")
-        with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([sys.executable, script, file], cwd=folder, check=True, stdout=subprocess.DEVNULL)
-
-    return draw
 
 
 def printed(*words: object, made: str) -> Callable[[Path], None]:
@@ -121,11 +99,39 @@ def self_motions(file: Path) -> None:
     figure.savefig(file, dpi=110)
 
 
+def waits(file: Path) -> None:
+    """A robot waits before a door: the two files that the page on teaching prints."""
+    page = (ROOT / "docs" / "teaching_paths.md").read_text(encoding="utf-8")
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("doors.json", "moving.json"):
+            content = page.split(f"`{name}`:", 1)[1].split("```json\n", 1)[1].split("```", 1)[0]
+            Path(folder, name).write_text(content, encoding="utf-8")
+        speed = ("--speed", 1, "--radius", 0.2, "--picture", file)
+        command("mobile", "moving", "doors.json", "moving.json", *speed, cwd=Path(folder))
+
+
+def singular(file: Path) -> None:
+    """Orientations of the reference platform at one position, and where det J changes sign."""
+    from dataclasses import replace
+
+    from pin_metaik import stewart
+
+    tilt, yaw = np.radians((-30.0, 30.0)), np.radians((-115.0, 115.0))
+    spread = stewart.Grid((1, 1, 1), (0, 0), (0, 0), (0.37, 0.37), (21, 21, 41), tuple(tilt), tuple(tilt), tuple(yaw))
+    reference = stewart.load_mechanism("reference_6x6")
+    mechanism = replace(reference, limits=replace(reference.limits, shortest=0.2, longest=0.6), grid=spread)
+    stewart.save_picture(stewart.draw(mechanism, mechanism.survey()), file)
+
+
 PICTURES: dict[str, Callable[[Path], None]] = {
     "shelf": shelf,
     "self_motions": self_motions,
-    "mobile_trajectory": example("31"),
     "path_generations": printed("mobile", "evolve", "ten_obstacles", "--method", "pso", "-o", "it.png", made="it.png"),
+    "path_planners": printed(
+        "mobile", "compare", "ten_obstacles", "--runs", 10, "--out", "together", made="together/planners_paths.png"
+    ),
+    "path_waits": waits,
+    "stewart_singular": singular,
     "servo_platform": printed("stewart", "show", "servo_sg90", "-o", "it.png", made="it.png"),
 }
 
