@@ -83,6 +83,7 @@ def test_a_grid_around_a_chain_holds_all_that_it_reaches() -> None:
     assert_allclose(np.array(grid.lower) / 0.1, np.round(np.array(grid.lower) / 0.1), atol=1e-9)
 
 
+@pytest.mark.slow
 def test_the_browser_shows_a_map_with_the_robot_in_it(
     ur5_map: Reachability, browser: list[str], tmp_path: Path
 ) -> None:
