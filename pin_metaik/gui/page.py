@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any, Protocol
 
 
@@ -19,18 +20,21 @@ class Page(Protocol):
         ...
 
 
-Open = Callable[[Any, Mapping[str, Any]], Page]
-"""Of a ``Tab`` and what the page keeps."""
-
-
 @dataclass(frozen=True)
 class Entry:
-    """A page in the registry.
+    """A page in the registry. Its module is imported when it is first opened: the first page need not wait for others.
 
     Attributes:
         title: In the list of pages.
-        open: Opens it in a tab with what it keeps.
+        module: Where its class is.
+        name: Of its class, which takes a ``Tab`` and what the page keeps.
     """
 
     title: str
-    open: Open
+    module: str
+    name: str
+
+    def open(self, tab: Any, values: Mapping[str, Any]) -> Page:
+        """Open it in a tab with what it keeps."""
+        page: Page = getattr(import_module(self.module), self.name)(tab, values)
+        return page

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 from pin_metaik.gui.page import Entry
-from pin_metaik.gui.pages.arms import ArmsPage
-from pin_metaik.gui.pages.comparisons import ComparisonsPage
-from pin_metaik.gui.pages.heuristics import HeuristicsPage
-from pin_metaik.gui.pages.information import InformationPage
-from pin_metaik.gui.pages.paths import PathsPage
-from pin_metaik.gui.pages.platforms import PlatformsPage
 
+HERE = "pin_metaik.gui.pages"
 PAGES: dict[str, Entry] = {
-    "arms": Entry("Arms", ArmsPage),
-    "metaheuristics": Entry("Metaheuristics at work", HeuristicsPage),
-    "paths": Entry("Path planning", PathsPage),
-    "platforms": Entry("Stewart platforms", PlatformsPage),
-    "comparisons": Entry("Comparisons", ComparisonsPage),
-    "information": Entry("Information", InformationPage),
+    "arms": Entry("Arms", f"{HERE}.arms", "ArmsPage"),
+    "metaheuristics": Entry("Metaheuristics at work", f"{HERE}.heuristics", "HeuristicsPage"),
+    "paths": Entry("Path planning", f"{HERE}.paths", "PathsPage"),
+    "platforms": Entry("Stewart platforms", f"{HERE}.platforms", "PlatformsPage"),
+    "comparisons": Entry("Comparisons", f"{HERE}.comparisons", "ComparisonsPage"),
+    "information": Entry("Information", f"{HERE}.information", "InformationPage"),
 }
