@@ -67,11 +67,10 @@ def comparisons(tab: Page) -> None:
     from pin_metaik.compare import Suite, compare
 
     folder = Path(tab.folder) / "results"
-    compare(
-        Suite(("ur5", "panda"), ("random", "near_limit"), ("dls", "gwo"), tasks=8, budget=2000), folder, figures=False
-    )
+    compare(Suite(("ur5", "panda"), ("random", "near_limit"), ("dls", "gwo"), tasks=8, budget=2000), folder)
     packed = tab.packed(folder)
     tab.choose("Page", "Comparisons")
+    tab.dismiss()
     tab.send("Open a results folder: .zip", packed)
     tab.see("95 % interval")
 
