@@ -118,7 +118,7 @@ def odd_tree(tree: Tree, rnd: Random) -> Tree:
                 holder.insert(rnd.randint(0, len(holder)), copy.deepcopy(holder[key]))
             case 5:
                 holder[str(key) + rnd.choice("sX_ ")] = holder.pop(key)
-            case 6 if isinstance(holder[key], (int, float)):
+            case 6 if isinstance(holder[key], (int, float)) and abs(holder[key]) < 10**300:
                 holder[key] *= rnd.choice((-1, 0, 2, 1e3, 1e-9, 1e30))
             case 6:
                 holder[key], other[at] = other[at], holder[key]

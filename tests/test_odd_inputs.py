@@ -153,6 +153,12 @@ def test_geojson_that_holds_what_is_no_object_is_refused(tmp_path: Path) -> None
         mobile.load_scene(tmp_path / "p.geojson", (0, 0), (1, 1))
 
 
+def test_a_grid_beyond_all_numbers_is_refused(tmp_path: Path) -> None:
+    np.save(tmp_path / "g.npy", np.eye(3))
+    with pytest.raises(InvalidGeometry, match=r"an occupancy grid is within 1e\+100"):
+        mobile.load_scene(tmp_path / "g.npy", (0, 0), (1, 1), resolution=1e300)
+
+
 @pytest.mark.parametrize("path", ["../elsewhere/r.urdf", "/etc/passwd", 3])
 def test_a_comparison_reads_robots_from_nowhere_but_its_folder(path: object) -> None:
     values = {**Manifest.from_suite(SMALL).to_json(), "files": {"ur5": path}}

@@ -18,6 +18,7 @@ from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry
 from pin_metaik.files import read_array
+from pin_metaik.mobile.world.polygons import FARTHEST
 from pin_metaik.mobile.world.ros_maps import OCCUPIED, read_ros_map
 from pin_metaik.optimize.settings import one_of, whole
 
@@ -47,6 +48,10 @@ class OccupancyGrid:
         if not (self.resolution > 0 and all(map(math.isfinite, (self.resolution, *self.origin)))):
             raise InvalidGeometry(
                 f"an occupancy grid has cells wider than 0 at a finite pose, got {self.resolution}, {self.origin}"
+            )
+        if not self.resolution * sum(self.occupied.shape) + abs(self.origin[0]) + abs(self.origin[1]) <= FARTHEST:
+            raise InvalidGeometry(
+                f"an occupancy grid is within {FARTHEST:g}: {self.occupied.shape} cells of {self.resolution:g} are not"
             )
 
     @cached_property

@@ -18,7 +18,7 @@ COMMENT = re.compile(rb"#[^\r\n]*")
 BETWEEN = rb"(?:\s|#[^\r\n]*[\r\n])+"
 HEADER = re.compile(rb"P[25]" + 2 * (BETWEEN + rb"(\d{1,9})") + BETWEEN + rb"(\d{1,9})(?:\s|#[^\r\n]*[\r\n])")
 DEEPEST = 65535  # the largest value of 16 bits
-MOST = 1 << 25  # numbers that pixels are unpacked to: a small file may say that it has billions
+MOST = 1 << 24  # numbers that pixels are unpacked to: a small file may say that it has billions
 GREY = ("1", "L", "I", "I;16", "I;16B", "I;16L", "F")
 FORMATS = ("PNG", "BMP", "TIFF", "GIF", "JPEG", "JPEG2000", "WEBP", "PPM", "PCX", "TGA", "ICO", "SGI")
 """Forms of images that are read: not those, as PostScript, that another program is run for."""
