@@ -52,7 +52,8 @@ def main() -> int:
     from playwright.sync_api import sync_playwright
 
     every = [page.relative_to(options.site) for page in sorted(options.site.rglob("*.html"))]
-    pages = [page for page in every if options.word in str(page) and page.parts[0] != "_static"]
+    skipped = {Path("index.html")}  # it leads to another page at once
+    pages = [page for page in every if options.word in str(page) and page.parts[0] != "_static" and page not in skipped]
     options.out.mkdir(parents=True, exist_ok=True)
     server, address = served(options.site)
     strange: list[str] = []

@@ -95,6 +95,7 @@ def self_motions(file: Path) -> None:
     joints.legend()
     places.set(xlabel="x, m", ylabel="y, m", zlabel="z, m", title="its elbow")
     places.set_aspect("equal")
+    places.locator_params(nbins=4)
     places.set_box_aspect(None, zoom=0.85)
     figure.savefig(file, dpi=110)
 
