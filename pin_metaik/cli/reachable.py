@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
+from pin_metaik.cli.options import Json
 from pin_metaik.cli.progress import progress_bar
 from pin_metaik.cli.versions import print_json
 from pin_metaik.collision import CollisionWorld, load_scene, scene_names
@@ -35,7 +36,6 @@ WorldName = Annotated[
     typer.Option("--world", help=f"A scene of obstacles: .toml or .json, or one of {', '.join(scene_names())}."),
 ]
 Seed = Annotated[int, typer.Option("--rng", min=0, help="Seed of every random choice.")]
-AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 
 
 def reachability(
@@ -59,7 +59,7 @@ def reachability(
     show: Annotated[bool, typer.Option("--show", help="Show it in the browser until Ctrl-C.")] = False,
     port: Annotated[int, typer.Option(min=0, max=65535, help="Of the page; 0: any that is free.")] = 8080,
     rng: Seed = 0,
-    as_json: AsJson = False,
+    as_json: Json = False,
 ) -> None:
     """Map which positions a robot reaches, in which share of orientations, and how well it can move there."""
     outputs = output or []
@@ -99,7 +99,7 @@ def place(
     places: Annotated[int, typer.Option(min=1, help="Places to try.")] = 1000,
     rng: Seed = 0,
     in_degrees: Annotated[bool, typer.Option("--degrees", help="Angles in degrees, given and shown.")] = False,
-    as_json: AsJson = False,
+    as_json: Json = False,
 ) -> None:
     """Find where on the floor to put a robot so that it reaches poses. Exit code 0: all of them, 1: not all."""
     _, chain, around = _asked(robot, frame, world)
