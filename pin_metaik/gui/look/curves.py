@@ -65,7 +65,7 @@ class CurvePlot:
         self.show({y: ([], [])})
 
     def show(self, curves: Curves) -> None:
-        """Show these curves. Other names make another plot: uPlot does not find its scales again after such a change."""
+        """Show these curves. Other names make another plot: uPlot does not find its scales again after that."""
         if not curves:
             return
         data = drawable(aligned(curves), self._log)
