@@ -93,7 +93,8 @@ def test_the_3x3_design_for_a_stroke_of_100_mm_is_clicked_through(tab: Any, tool
     assert f"{designed.score.fitness:.4f}: dexterity {designed.score.dexterity:.4f}" in tab.text()
     tab.click("Take the design")
     (session,) = toolbox.tabs.values()
-    tab.wait_until(lambda: session.page.kept()["mechanism"] == stewart.to_toml(designed.mechanism))
+    taken = stewart.to_toml(designed.mechanism)
+    tab.wait_until(lambda: session.page is not None and session.page.kept()["mechanism"] == taken)
 
 
 def session_pixel(session: Any, point: Any, tab: Any) -> tuple[float, float]:

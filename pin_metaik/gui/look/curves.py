@@ -58,21 +58,27 @@ class CurvePlot:
     """
 
     def __init__(self, gui: Any, x: str, y: str, *, log: bool = False, height: int = 230) -> None:
-        self._x = x
-        looks = {"stroke": "#888", "labelSize": 20}
-        axes = ({**looks, "label": x}, {**looks, "label": y, "grid": {"show": not log}, "ticks": {"show": not log}})
-        scales = {"x": {"time": False}, "y": {"distr": 3} if log else {}}
-        self._log = log
-        self._plot = gui.add_uplot(
-            drawable(aligned({"": ([], [])}), log), series_of([y], x), scales=scales, axes=axes, height=height, title=y
-        )
+        self._gui, self._x, self._y, self._log, self._height = gui, x, y, log, height
+        self._holder = gui.add_folder(None)
+        self._plot: Any = None
+        self._names: list[str] = []
+        self.show({y: ([], [])})
 
     def show(self, curves: Curves) -> None:
-        """Show these curves."""
+        """Show these curves. Other names make another plot: uPlot does not find its scales again after that."""
         if not curves:
             return
         data = drawable(aligned(curves), self._log)
-        series = series_of(list(curves), self._x)
-        if len(series) != len(self._plot.series):
-            self._plot.series = series
-        self._plot.data = data
+        if list(curves) == self._names:
+            self._plot.data = data
+            return
+        if self._plot is not None:
+            self._plot.remove()
+        self._names = list(curves)
+        looks = {"stroke": "#888", "labelSize": 20}
+        show = {"show": not self._log}
+        axes = ({**looks, "label": self._x}, {**looks, "label": self._y, "grid": show, "ticks": show})
+        scales = {"x": {"time": False}, "y": {"distr": 3} if self._log else {}}
+        series = series_of(self._names, self._x)
+        with self._holder:
+            self._plot = self._gui.add_uplot(data, series, scales=scales, axes=axes, height=self._height, title=self._y)

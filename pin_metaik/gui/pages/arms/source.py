@@ -51,6 +51,7 @@ class SourceControls:
             begin = gui.add_button("Type a table", hint="Begins with the table of the robot above, if it has one.")
             begin.on_click(tab.doing(self._type))
             self._holder = gui.add_folder(None)
+            self._box: Any = None
             self._form: Any = None
             as_toml = gui.add_button("Download as TOML")
             as_toml.on_click(tab.doing(lambda: tab.download("table.toml", self._table())))
@@ -85,10 +86,11 @@ class SourceControls:
         self._show_lengths()
 
     def _show_form(self, text: str) -> None:
-        if self._form is not None:
-            self._holder.remove()
-        self._holder = self._tab.client.gui.add_folder(None) if self._form is not None else self._holder
+        if self._box is not None:
+            self._box.remove()
         with self._holder:
+            self._box = self._tab.client.gui.add_folder(None)
+        with self._box:
             self._form = TableForm(self._tab, text, lambda typed: self._take(replace(self._state, table=typed)))
 
     def _named_table(self) -> bool:

@@ -46,6 +46,7 @@ class ComparisonsPage:
         upload = gui.add_upload_button("Open a results folder: .zip", mime_type=".zip")
         upload.on_upload(tab.doing(lambda: self._open(tab.received(upload, ".json")), "These results are not taken"))
         self._holder = gui.add_folder(None)
+        self._box: Any = None
 
     def kept(self) -> dict[str, Any]:
         """See ``Page``."""
@@ -61,9 +62,11 @@ class ComparisonsPage:
 
     def _furnish(self, results: Results) -> None:
         gui, tab = self._tab.client.gui, self._tab
-        self._holder.remove()
-        self._holder = gui.add_folder(None)
+        if self._box is not None:
+            self._box.remove()
         with self._holder:
+            self._box = gui.add_folder(None)
+        with self._box:
             with gui.add_folder("Choose"):
                 for label, options in (
                     ("Robot", (ALL, *results.robots)),
