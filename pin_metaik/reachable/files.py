@@ -15,7 +15,7 @@ from pin_metaik.errors import InvalidSetting
 from pin_metaik.files import read_arrays
 from pin_metaik.ik import IKStatus
 from pin_metaik.lookup import need
-from pin_metaik.output import writable
+from pin_metaik.output import replaced, writable
 
 KIND = "a map that Reachability.save has written"
 STATUSES = (None, *IKStatus)
@@ -48,7 +48,7 @@ def format_of(path: str | Path) -> Format:
 
 
 def write_map(path: str | Path, arrays: Arrays) -> Path:
-    """Write a map as its ending says.
+    """Write a map as its ending says, as a whole or not at all.
 
     Raises:
         InvalidSetting: Its ending names no format.
@@ -56,7 +56,8 @@ def write_map(path: str | Path, arrays: Arrays) -> Path:
         CannotWrite: The file cannot be written.
     """
     chosen, where = format_of(path), writable(path)
-    chosen.write(where, arrays)
+    with replaced(where) as partial:
+        chosen.write(partial, arrays)
     return where
 
 

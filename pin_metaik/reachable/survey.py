@@ -24,7 +24,7 @@ from pin_metaik.ik import IKBatch, IKSolver, Target, solve_ik_batch
 from pin_metaik.ik.problem import IKProblem, check_world
 from pin_metaik.kinematics import Chain
 from pin_metaik.optimize.settings import one_of
-from pin_metaik.output import replaced, writable
+from pin_metaik.output import writable
 from pin_metaik.randomness import Rng, as_seed
 from pin_metaik.reachable.files import STATUSES
 from pin_metaik.reachable.grid import Grid, spread_rotations
@@ -229,8 +229,7 @@ def reachability(
             return ended(stop, replace(found, seconds=perf_counter() - began))
         found = replace(found, seconds=perf_counter() - began)
         if folder is not None:
-            with replaced(folder / RESULT) as partial:
-                found.save(partial)
+            found.save(folder / RESULT)
     return found
 
 
