@@ -1575,6 +1575,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     },
     "compare.Case.lacks": lambda: {"robot": ur5(), "rng": rng()},
     "compare.Case.task": lambda: {"chain": chain(), "world": None, "rng": rng()},
+    "compare.Replay.as_dict": dict,
     "compare.Replay.lines": dict,
     "compare.Results.rows": lambda: {"robot": "ur5", "case": "random", "method": "lm"},
     "compare.Results.hopeless": lambda: {"case": "random"},

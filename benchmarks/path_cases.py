@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 import pin_metaik as mik
 from pin_metaik.collision import Obstacle, Sphere
+from pin_metaik.ik.labels import signs_of
 from pin_metaik.ik.layers import Layers
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.ways import Ways
@@ -66,7 +67,7 @@ def without_self_motions(chain: mik.Chain, poses: list[pin.SE3], world: mik.Coll
     problems = [IKProblem.of(chain, pose, world).at(base) for pose in poses]
     layers = Layers(problems, base, np.full(chain.n, step), None, None)
     layers.fill(False, None)
-    ways = Ways(chain, layers.found, layers.bound, None, base, world, False)
+    ways = Ways(chain, layers.found, layers.bound, None, base, world, False, lambda i, X: signs_of(problems[i], X))
     layers.widen(ways.best().breaks, None)
     way = replace(ways).best()
     return len(way.rows) == len(poses) and not way.breaks

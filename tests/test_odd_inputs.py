@@ -95,12 +95,13 @@ def test_arrays_that_are_damaged_or_unpack_to_gigabytes_are_refused(tmp_path: Pa
             file.write(bytes(1 << 20))
     good = io.BytesIO()
     np.save(good, np.eye(3))
-    (tmp_path / "torn.npy").write_bytes(good.getvalue()[:60])
+    for name in ("torn.npy", "torn.npz"):
+        (tmp_path / name).write_bytes(good.getvalue()[:60])
     (tmp_path / "vast.npy").write_bytes(good.getvalue().replace(b"(3, 3)", b"(3, 10000000000000)"))
     with pytest.raises(InvalidSetting, match="unpacked it has more than 1,024 MiB"):
         learn.load_regressor(tmp_path / "bomb.npz")
     with pytest.raises(InvalidSetting, match="not a map"):
-        mik.Reachability.load(tmp_path / "torn.npy")
+        mik.Reachability.load(tmp_path / "torn.npz")
     for name in ("torn.npy", "vast.npy"):
         with pytest.raises(InvalidGeometry, match=r"is not a \.npy file of points"):
             read_points(tmp_path / name)

@@ -52,11 +52,12 @@ def all_of_plain(
         chain: The chain, its held joints where q0 has them.
         target: Whatever somebody asks for.
         q0: (nq,) configuration that solutions are ordered by, and that has other joints.
-        descent: What descends to a solution from a root of six joints, where it is compiled.
+        descent: What descends to a solution; if it is not compiled, this takes a search.
         apart: rad or m by which some coordinate of two solutions must differ.
         certify: Whether a search may prove that they are all, where counting does not.
     """
-    if not chain.has_pose_solver or chain.n != 6:
+    settings = descent.settings(ENOUGH)
+    if settings is None or not chain.has_pose_solver or chain.n != 6:
         return None
     near = aligned = DEFAULT_TOLERANCE
     given: Target | None = None
@@ -75,7 +76,7 @@ def all_of_plain(
         return None
     try:
         q = np.array(chain.reference if q0 is None else q0, dtype=float)
-        found = (_by_form if len(chain.form) else _by_roots)(chain, matrix, near, aligned, descent, apart, certify, q)
+        found = (_by_form if len(chain.form) else _by_roots)(chain, matrix, near, aligned, settings, apart, certify, q)
     except (TypeError, ValueError, OverflowError):  # whatever it is, the long way takes it or says what is wrong
         return None
     if found is None:
@@ -92,7 +93,7 @@ Found: TypeAlias = tuple[Array, Proof | None, int, Parts] | None
 
 
 def _by_form(
-    chain: Chain, pose: Array, near: float, aligned: float, descent: Descent, apart: float, certify: bool, q: Array
+    chain: Chain, pose: Array, near: float, aligned: float, settings: Array, apart: float, certify: bool, q: Array
 ) -> Found:
     """The branches of a closed form, where these are proved to be all."""
     proof = chain.form_proof
@@ -103,18 +104,18 @@ def _by_form(
 
 
 def _by_roots(
-    chain: Chain, pose: Array, near: float, aligned: float, descent: Descent, apart: float, certify: bool, q: Array
+    chain: Chain, pose: Array, near: float, aligned: float, settings: Array, apart: float, certify: bool, q: Array
 ) -> Found:
     """The roots of six joints, where there are as many as at any pose, and proved to be all if that is asked for."""
-    six, settings = chain._six_joints, descent.settings(ENOUGH)
-    if settings is None or six is None or (certify and six.degree != six.bound):
+    six = chain._six_joints
+    if six is None or (certify and six.degree != six.bound):
         return None
     every = chain._configurations(pose)
     if every is None or not every.all or (certify and not every.proved):
         return None
     out = np.empty((ROOTS, len(q)))
     count, met, spent, position, turn = every.settle(
-        chain.bare, chain.limits, settings, near, aligned, pose, apart, q, out
+        chain.bare, chain.limits, settings, near, aligned, pose, apart=apart, q=q, out=out
     )
     proved = every.proved and met
     if count <= 0 or (certify and not proved):

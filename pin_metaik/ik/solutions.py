@@ -72,7 +72,9 @@ class IKSolutions:
 
     def __getstate__(self) -> dict[str, object]:
         """Pickle without the world: kilobytes rather than megabytes."""
-        return {**self.__dict__, "problem": replace(self.problem, world=None), "world": None}
+        kept = {name: value for name, value in self.__dict__.items() if name != "problem"}
+        given = replace(self.given, world=None) if isinstance(self.given, IKProblem) else self.given
+        return {**kept, "given": given, "world": None}
 
     @cached_property
     def problem(self) -> IKProblem:

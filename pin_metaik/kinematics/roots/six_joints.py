@@ -72,6 +72,7 @@ class Configurations:
         near: float,
         aligned: float,
         pose: Array,
+        *,
         apart: float,
         q: Array,
         out: Array,
