@@ -36,6 +36,17 @@ def signs_of(problem: IKProblem, X: Array) -> Signs:
     return _signs(values[:, 3:], np.array([size**3]))
 
 
+def on_other_branches(before: Signs, after: Signs) -> NDArray[np.bool_]:
+    """Which solutions (k, f) of one problem and (l, g) of the next are on different branches: (k, l).
+
+    None, if the problems have not the same factors, as a pose and a position have not.
+    """
+    if before.shape[1] != after.shape[1]:
+        return np.zeros((len(before), len(after)), np.bool_)
+    differ: NDArray[np.bool_] = (before[:, None] != after[None]).any(axis=2)
+    return differ
+
+
 def labels_of(problem: IKProblem, X: Array) -> tuple[str, ...]:
     """A name for each of the solutions X (k, n) of a problem: the factors of its singularities with their signs.
 

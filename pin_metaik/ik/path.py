@@ -69,7 +69,7 @@ class IKPath:
     def reconfigurations(self) -> tuple[Reconfiguration, ...]:
         """Where the path changes its branch: at breaks, and through singularities between two poses without one."""
         met = np.flatnonzero(self.success).tolist()
-        steps = [(a, b) for a, b in pairwise(met) if self.labels[a] != self.labels[b]]
+        steps = [(a, b) for a, b in pairwise(met) if "" != self.labels[a] != self.labels[b] != ""]
         return tuple(Reconfiguration(b, self.labels[a], self.labels[b]) for a, b in steps)
 
     @property

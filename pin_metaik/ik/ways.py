@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.collision import CollisionWorld
-from pin_metaik.ik.labels import Signs
+from pin_metaik.ik.labels import Signs, on_other_branches
 from pin_metaik.kinematics import Chain
 
 BREAK = 1e6  # what a break costs, in rad or m of way: more than any path has
@@ -134,7 +134,7 @@ class Ways:
         """Costs (a, b) of the steps between two layers, with what is too long for a step, or to another branch."""
         a, b = self.layers[before], self.layers[here]
         step = self.chain.limits.way(a[:, None], b[None])  # (a, b, n)
-        changes = (self.signs(before, a)[:, None] != self.signs(here, b)[None]).any(axis=2)
+        changes = on_other_branches(self.signs(before, a), self.signs(here, b))
         costs = np.linalg.norm(step, axis=2) + CHANGE * changes
         costs += BREAK * (np.abs(step) > self.bound).any(axis=2)
         kept: Singles = costs.astype(np.float32)  # they are, of all layers

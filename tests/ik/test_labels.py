@@ -77,3 +77,13 @@ def test_a_path_tells_its_reconfigurations_and_takes_the_way_with_none() -> None
         assert all(path.labels[one.index] == one.after for one in path.reconfigurations)
     assert len(free.reconfigurations) <= len(crossing.reconfigurations)
     assert all("wrist" in str(one) for one in crossing.reconfigurations)
+
+
+def test_a_path_of_poses_and_positions_has_labels_where_solutions_are_separate() -> None:
+    chain = chain_of("ur5")
+    q = chain.q([0.1, -1.2, 1.4, -0.5, 0.8, 0.2])
+    pose = chain.placements(q)[0]
+    path = mik.solve_ik_path(chain, [pose, pose.translation + np.array([0.0, 0.0, 0.01]), pose], q)
+    assert path.success.all()
+    assert [bool(label) for label in path.labels] == [True, False, True]
+    assert not path.reconfigurations
