@@ -11,6 +11,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 WAIT = 180_000.0  # ms, of a machine that does other things as well
+TRIES = 6  # clicks, where one may be lost
 ARGUMENTS = (
     "--headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader "
     "--disable-quic --no-first-run --disable-background-networking --disable-component-update --disable-sync"
@@ -68,6 +69,19 @@ class Page:
     def click(self, button: str) -> None:
         """Click a button."""
         self.page.get_by_role("button", name=button, exact=True).first.click()
+
+    def click_until(self, button: str, text: str) -> None:
+        """Click a button until a text is there: a click is lost on a button that is just being made anew."""
+        from playwright.sync_api import TimeoutError as TooLate
+
+        for _ in range(TRIES):
+            self.click(button)
+            try:
+                self.page.get_by_text(text).first.wait_for(timeout=WAIT / TRIES)
+            except TooLate:
+                continue
+            return
+        self.see(text)
 
     def choose(self, label: str, value: str) -> None:
         """Choose an entry of a list."""

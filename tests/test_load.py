@@ -14,7 +14,7 @@ import pin_metaik as mik
 from pin_metaik.collision import load_scene
 from tests.robots_under_test import chain_of
 
-COUNTS = {"solves": 40_000, "checks": 3_000, "worlds": 200, "paths": 50}
+COUNTS = {"solves": 20_000, "checks": 2_000, "worlds": 100, "paths": 25}
 FLAT = 5.0  # MiB
 THREADS = 8
 

@@ -63,16 +63,14 @@ def test_the_papers_ga_and_pso_are_clicked_through_and_their_numbers_are_the_lib
     tab.see("Examples of the paper")
     tab.click("Set up")
     tab.see("crossover_rate")
-    tab.click("Run")
-    tab.see("by the exact test")
+    tab.click_until("Run", "by the exact test")
     assert f"{plan.cost:.6g}" in tab.text() and f"length {plan.length:.6f}" in tab.text()
     assert re.search(r"ga 1\s+\S+\s+10,000", tab.text())
 
     tab.choose("Example", "Fig. 18: PSO on the Puma")
     tab.click("Set up")
     tab.see("Goal x, y, z, m")
-    tab.click("Run")
-    tab.see("tip at")
+    tab.click_until("Run", "tip at")
     reached = problem.chain.poses(found.x)[0, 0, :3, 3]
     assert f"{found.cost:.6g}" in tab.text()
     assert f"tip at ({', '.join(f'{value:.4f}' for value in reached)})" in tab.text()
@@ -88,8 +86,7 @@ def test_the_3x3_design_for_a_stroke_of_100_mm_is_clicked_through(tab: Any, tool
     tab.see("stroke_100")  # what the page begins with
     tab.open("5 Goal and search")
     tab.type("evaluations", str(DESIGNS))
-    tab.click("Design")
-    tab.see("designs looked at")
+    tab.click_until("Design", "designs looked at")
     assert f"{designed.score.fitness:.4f}: dexterity {designed.score.dexterity:.4f}" in tab.text()
     tab.click("Take the design")
     (session,) = toolbox.tabs.values()
