@@ -62,6 +62,7 @@ class Ways:
     world: CollisionWorld | None
     moves: bool
     signs: Callable[[int, Floats], Signs]
+    _signs: dict[int, Signs] = field(init=False, default_factory=dict)  # branches (s, f) of each layer
     _steps: dict[int, Singles] = field(init=False, default_factory=dict)  # costs (a, b) of the steps to each layer
     _known: set[tuple[int, int, int]] = field(init=False, default_factory=set)  # steps that were looked at
     _totals: dict[int, Floats] = field(init=False, default_factory=dict)  # costs (b,) up to each layer
@@ -134,11 +135,17 @@ class Ways:
         """Costs (a, b) of the steps between two layers, with what is too long for a step, or to another branch."""
         a, b = self.layers[before], self.layers[here]
         step = self.chain.limits.way(a[:, None], b[None])  # (a, b, n)
-        changes = on_other_branches(self.signs(before, a), self.signs(here, b))
+        changes = on_other_branches(self._branches(before), self._branches(here))
         costs = np.linalg.norm(step, axis=2) + CHANGE * changes
         costs += BREAK * (np.abs(step) > self.bound).any(axis=2)
         kept: Singles = costs.astype(np.float32)  # they are, of all layers
         return kept
+
+    def _branches(self, i: int) -> Signs:
+        """The branches (s, f) of the solutions of a layer, which has two neighbours that ask for them."""
+        if i not in self._signs:
+            self._signs[i] = self.signs(i, self.layers[i])
+        return self._signs[i]
 
     def _lengths(self, before: Floats, here: Floats) -> Floats:
         lengths: Floats = np.linalg.norm(self.chain.limits.way(before[:, None], here[None]), axis=2)

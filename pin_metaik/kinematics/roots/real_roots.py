@@ -26,10 +26,8 @@ from pin_metaik.kinematics.kernel.pose_solver import (
 )
 from pin_metaik.kinematics.kernel.scratch import Scratch, scratch_for
 from pin_metaik.kinematics.roots.complex_arm import Complexes
+from pin_metaik.kinematics.roots.real import BEYOND, NEARLY, REAL
 
-REAL = 1e-7  # imaginary part that is rounding
-NEARLY = 0.05  # imaginary part of what may be real where rounding, or a tolerance, makes two of one
-BEYOND = 1e-3  # rad or m outside a limit, from where a descent may still end inside
 INSIDE, BESIDE, OUTSIDE, SEVERAL = 0, 1, 2, 3  # several: it has copies that are different configurations
 OPEN = -1  # solutions, where these may not be all
 

@@ -15,6 +15,7 @@ from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE, SHIFT
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.paths import ChainArrays
 from pin_metaik.kinematics.proofs.closed_forms import Place
+from pin_metaik.kinematics.roots.real import BEYOND, NEARLY, REAL
 
 Complexes: TypeAlias = NDArray[np.complex128]
 Ints: TypeAlias = NDArray[np.int64]
@@ -29,9 +30,6 @@ BARREN, ROUNDS = 8, 100  # rounds that must bring nothing new before all are kno
 POSES, GOOD = 8, 0.5  # that loops are tried on; share of the roots that one must find to be used
 LOOPS = 12
 SAME = 1e-6  # rad or lengths: two nearer than this are one
-REAL = 1e-7  # imaginary part that is rounding
-NEARLY = 0.05  # imaginary part of what may be real where rounding, or a tolerance, makes two of one
-BEYOND = 1e-3  # rad or m outside a limit, from where a descent may still end inside
 TURN = 2.0 * np.pi
 
 
