@@ -26,14 +26,14 @@ class Obstacle:
         name: A name that no link and no other obstacle has.
         shape: Its shape.
         pose: Where it stands: ``pin.SE3``, (4, 4), or a position (3,); kept as ``pin.SE3``. Default: the origin.
-        touching: Names of links and obstacles that may touch it.
-        padding: What is added to the world's margin, m: one distance for all pairs of it, or one for each name of a
-            link or obstacle. By name it stands instead of what the padding of the two would add.
+        touching: Names of links and obstacles that may touch it: these pairs are not checked.
+        padding: Distance that is added to the world's margin, m: one for all its pairs, or a mapping from names of
+            links and obstacles. One given by name replaces the sum of the paddings of the two bodies.
 
     Raises:
-        InvalidGeometry: If the name is empty, the shape is none, the pose is not finite and orthonormal, what may
-            touch it is not a list of names, the padding is not made of distances of at least 0 m, or keeps away what
-            may touch it.
+        InvalidGeometry: If the name is empty, the shape is not one of ``Shape``, the pose is not finite and
+            orthonormal, ``touching`` is not a list of names, a padding is not a distance of at least 0 m, or a body in
+            ``touching`` has a padding.
     """
 
     name: str

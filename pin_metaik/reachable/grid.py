@@ -20,7 +20,7 @@ MOST = 10_000_000  # positions of a grid
 @checked
 @dataclass(frozen=True)
 class Grid:
-    """Positions at equal distances in a box, both ends included where they are a multiple of the spacing apart.
+    """A regular grid of positions in a box, including its upper end where the width is a multiple of the spacing.
 
     Attributes:
         lower: Least x, y and z, m, in the world.
@@ -49,10 +49,10 @@ class Grid:
     @staticmethod
     @checked
     def around(chain: Chain, spacing: float) -> Grid:
-        """All positions that a chain could reach at most, at whole multiples of a spacing (m).
+        """A grid around all positions that a chain can possibly reach, at whole multiples of a spacing (m).
 
         Args:
-            chain: Whose first frame is to be placed.
+            chain: The chain whose first frame is placed.
             spacing: Distance between neighbours, m.
 
         Raises:

@@ -27,10 +27,11 @@ class Distance(OfFrame):
     Attributes:
         point: (3,), m.
         least: The least distance, m.
-        most: The largest distance, m; equal to ``least``: that distance.
+        most: The largest distance, m; equal to ``least`` for exactly that distance.
 
     Raises:
-        InvalidTarget: If the point is none, a distance is below zero, ``least`` is above ``most``, or both are free.
+        InvalidTarget: If the point is not (3,) finite numbers, a distance is below zero, ``least`` is above ``most``,
+            or neither bounds anything.
     """
 
     point: ArrayLike

@@ -23,13 +23,13 @@ from pin_metaik.kinematics import Chain
 @checked_as(InvalidTarget)
 @dataclass(frozen=True, eq=False)
 class Posture(Bounded):
-    """Joints of the chain at given values, or between two values: y = x; rad and m alike.
+    """Joints of the chain at given values, or between two values: y = x; rad and m weighted alike.
 
-    ``Posture(q0)`` is near a configuration; as a wish it displaces the robot as little as the other goals allow.
+    ``Posture(q0)`` asks for a configuration; as a wish it keeps the robot as near to it as the other goals allow.
 
     Attributes:
-        joints: A configuration (nq,), of which the chain's joints count, or values by name of the joint, each a number
-            or a range (least, most).
+        joints: A configuration (nq,), of which the chain's joints are used, or a mapping from names of joints to a
+            value or a range (least, most).
 
     Raises:
         InvalidTarget: If there are no values, one is not finite, or a range is empty.

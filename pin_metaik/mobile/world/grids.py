@@ -28,7 +28,7 @@ Unknown = Literal["blocked", "free"]
 @checked
 @dataclass(frozen=True, eq=False)
 class OccupancyGrid:
-    """Square cells that are free or occupied. Between occupied cells that touch at a corner there is no way.
+    """Square cells that are free or occupied. There is no passage between occupied cells that touch at a corner.
 
     Attributes:
         occupied: (rows, columns) row 0 is the lowest: cell (r, c) begins at (c, r) times the resolution.
@@ -56,7 +56,7 @@ class OccupancyGrid:
 
     @cached_property
     def polygons(self) -> tuple[shapely.Polygon, ...]:
-        """The occupied cells as as few polygons as possible; what lies beyond the corners of a turned grid too."""
+        """The occupied cells as as few polygons as possible; with the regions beyond the corners of a rotated grid."""
         parts = [self._placed(part) for part in _outlined(self.occupied)]
         if self.origin[2]:
             sheet = self._placed(self._sheet)
@@ -71,10 +71,10 @@ class OccupancyGrid:
 
     @checked
     def without_specks(self, cells: int) -> OccupancyGrid:
-        """The grid without specks: groups of fewer occupied cells, joined along edges or at corners.
+        """The grid without groups of fewer than ``cells`` occupied cells, joined along edges or at corners.
 
         Args:
-            cells: How many make an obstacle, at least 1.
+            cells: The least number of cells of an obstacle, at least 1.
 
         Raises:
             InvalidSetting: A number below 1.

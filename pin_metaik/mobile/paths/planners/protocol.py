@@ -26,7 +26,7 @@ class Found:
 
     Attributes:
         path: From start to goal; None if it found none.
-        trace: Lines tested and length of the best path so far (g, 2), for planners that go on to improve theirs.
+        trace: (g, 2) lines tested and length of the best path so far, for planners that improve their path.
     """
 
     path: Path | None
@@ -35,7 +35,7 @@ class Found:
 
 @runtime_checkable
 class PathPlanner(Protocol):
-    """Anything that looks for a path; its settings are fields of a frozen dataclass."""
+    """A path planner; its settings are fields of a frozen dataclass."""
 
     def route(self, problem: PathProblem, tests: LineTests, rng: np.random.Generator) -> Found:
         """Look for a path until ``tests.spent``.
