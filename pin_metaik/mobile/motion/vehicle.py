@@ -172,11 +172,11 @@ def load_vehicle(source: str | Path) -> Vehicle:
     Args:
         source: ``nomad200``, ``nomad200_driver``, ``turtlebot3_burger``, ``turtlebot3_waffle``, or the path of a
             ``.json``: of a differential drive with track, wheel_speed, wheel_acceleration (m) and radius; of a
-            synchro-drive with any of v_max, a_max, omega_max, alpha_max (m and rad) and radius, where what it leaves
-            out is the Nomad 200's.
+            synchro-drive with any of v_max, a_max, omega_max, alpha_max (m and rad) and radius; values left out are
+            those of the Nomad 200.
 
     Raises:
-        UnknownName: None of that name.
+        UnknownName: There is no robot of that name.
         InvalidSetting: The file is missing or malformed, or a limit makes no sense.
     """
     if Path(source).suffix.lower() == ".json":

@@ -46,7 +46,7 @@ def shortest_paths(
 
     Raises:
         Blocked: The robot cannot be at the start or the goal.
-        NoPath: There is no way between them.
+        NoPath: There is no path between them.
         InvalidSetting: A count below 1.
     """
     whole("count", count, 1)

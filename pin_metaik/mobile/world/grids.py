@@ -109,10 +109,11 @@ def grid_of(
     """A grid from an array, row 0 the lowest.
 
     Args:
-        values: (rows, columns) cells above the threshold are occupied, those below zero (or NaN) unknown.
-        threshold: 0 suits masks; 65 the message ``nav_msgs/OccupancyGrid``, whose numbers are percents.
+        values: (rows, columns); cells above the threshold are occupied, cells below zero or NaN are unknown.
+        threshold: Cells above it are occupied: 0 for masks, 65 for the message ``nav_msgs/OccupancyGrid``, whose values
+            are percentages.
         unknown: Whether unknown cells are ``"blocked"`` or ``"free"``.
-        unknown_blocks: The same as True or False, as it was once given.
+        unknown_blocks: The older form of ``unknown``: True for ``"blocked"``, False for ``"free"``.
         resolution: Width of a cell in m.
         origin: Pose (x, y, yaw) of the lower left corner, in m and rad.
 
@@ -139,13 +140,14 @@ def read_grid(
     Args:
         path: The file.
         unknown: Whether unknown cells are ``"blocked"`` or ``"free"``.
-        unknown_blocks: The same as True or False, as it was once given.
-        threshold: Cells above it are occupied. Default: 0 for a ``.npy``; 99 for a ROS map, whose numbers are percents:
-            only what is certainly occupied, as for nav2's static layer. Maps of mode ``scale`` have cells between.
+        unknown_blocks: The older form of ``unknown``: True for ``"blocked"``, False for ``"free"``.
+        threshold: Cells above it are occupied. Default: 0 for a ``.npy``; 99 for a ROS map, whose values are
+            percentages: then only certainly occupied cells count, as in nav2's static layer (maps of mode ``scale``
+            have values between).
         resolution: Width of a cell of a ``.npy`` in m, default 1. A ROS map has its own.
 
     Raises:
-        InvalidGeometry: The file is missing, or is neither.
+        InvalidGeometry: The file is missing, or is not a grid.
         InvalidSetting: Unknown cells that are neither blocked nor free, or a resolution for a ROS map.
         MissingExtra: PyYAML or Pillow is not installed.
     """

@@ -36,7 +36,7 @@ def read_obstacles(source: Any) -> tuple[BaseGeometry, ...]:
         source: A polygon as vertices (n, 2); a shapely geometry, or an object with ``__geo_interface__``; WKT, one
             geometry or one a line; a GeoJSON mapping; the path of a ``.geojson``, ``.json`` or ``.wkt`` file; or a
             sequence of any of these. Geometries of several parts become several obstacles; holes are kept; heights (z)
-            are dropped; a GeoJSON feature without a geometry is none.
+            are dropped; GeoJSON features without a geometry are ignored.
 
     Raises:
         InvalidGeometry: A polygon crosses itself, has no area, fewer than three vertices or numbers that are not
