@@ -139,7 +139,7 @@ def _pieces(robot: Geometry, visual: bool) -> list[Any]:
             return pieces
         if not visual:
             raise InvalidGeometry(
-                f"{robot.name} has no collision geometry, and its visual geometry is not to be checked"
+                f"{robot.name} has no collision geometry, and visual=False leaves out its visual geometry"
             )
         seen = getattr(robot, "visual_model", None)
         pieces = [] if seen is None else list(seen.geometryObjects)

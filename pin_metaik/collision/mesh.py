@@ -62,7 +62,9 @@ class Mesh:
         if self.triangles is not None:
             triangles = _triangles(self.triangles)
             if not len(triangles) or triangles.min() < 0 or triangles.max() >= len(vertices):
-                raise InvalidGeometry(f"{self.name} has no triangles (m, 3), or corners that are none of its vertices")
+                raise InvalidGeometry(
+                    f"{self.name} has no triangles (m, 3), or triangles with indices outside its vertices"
+                )
             object.__setattr__(self, "triangles", triangles)
             _check_closed(vertices, triangles, self.name)
         object.__setattr__(self, "hull", convex_hull(vertices, self.name))
@@ -168,7 +170,9 @@ def convex_hull(points: NDArray[np.float64], name: str = "mesh") -> Any:
             raise InvalidGeometry(f"{name} has no volume: its {len(points)} points nearly lie in one plane") from None
         except RuntimeError:
             continue
-    raise InvalidGeometry(f"{name} has a convex hull that coal cannot hold: thin it out")
+    raise InvalidGeometry(
+        f"{name} has a convex hull with a corner of more than 255 edges, which coal cannot store: simplify it"
+    )
 
 
 def convex(corners: NDArray[np.float64], triangles: NDArray[Any]) -> Any:

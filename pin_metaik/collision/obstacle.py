@@ -57,7 +57,9 @@ class Obstacle:
         object.__setattr__(self, "touching", _names(self.name, self.touching))
         object.__setattr__(self, "padding", _padding(self.name, self.padding))
         if isinstance(self.padding, Mapping) and (both := set(self.padding).intersection(self.touching)):
-            raise InvalidGeometry(f"{min(both)!r} may touch {self.name!r}, and is kept away from it by a padding")
+            raise InvalidGeometry(
+                f"{min(both)!r} is both in touching and in padding of {self.name!r}: take it out of one"
+            )
 
 
 def _names(name: str, touching: Iterable[str]) -> tuple[str, ...]:
@@ -66,7 +68,7 @@ def _names(name: str, touching: Iterable[str]) -> tuple[str, ...]:
     except (TypeError, RuntimeError):  # the latter of what Pinocchio wraps and cannot list
         names = (None,)
     if not all(isinstance(one, str) for one in names):
-        raise InvalidGeometry(f"what may touch {name!r} is a list of names, got {touching!r}")
+        raise InvalidGeometry(f"touching of {name!r} is a list of names, got {touching!r}")
     return cast(tuple[str, ...], names)
 
 

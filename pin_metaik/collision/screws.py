@@ -159,4 +159,6 @@ def _check_size(what: str, values: NDArray[np.float64], most: float) -> None:
         InvalidConfiguration: One is.
     """
     if (largest := float(np.abs(values).max(initial=0.0))) > most:
-        raise InvalidConfiguration(f"{what} whose way is checked is at most {most:g} rad or m, got {largest:g}")
+        raise InvalidConfiguration(
+            f"{what} can be checked for collisions up to {most:g} rad or m only, got {largest:g}"
+        )

@@ -62,7 +62,7 @@ def write_export(chain: Chain, path: Path) -> None:
         CannotWrite: The file cannot be written.
     """
     if path.suffix not in SUFFIXES:
-        raise CannotExport(f"the file's ending says the language, {' or '.join(SUFFIXES)}; got {path.name!r}")
+        raise CannotExport(f"the suffix gives the language, {' or '.join(SUFFIXES)}; got {path.name!r}")
     writable(path).write_text(exported(chain, SUFFIXES[path.suffix]), encoding="utf-8")
 
 

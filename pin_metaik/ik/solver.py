@@ -102,7 +102,7 @@ class IKSolver:
         if descent is None and (seeder is None or self.seeder == "auto"):
             raise InvalidSetting("without a refiner name a seeder, e.g. IKSolver('gwo', None)")
         if descent is None and measure is not None:
-            raise InvalidSetting("to choose among solutions takes a refiner, e.g. IKSolver('gwo', 'dls', select=...)")
+            raise InvalidSetting("select needs a refiner, e.g. IKSolver('gwo', 'dls', select=...)")
         object.__setattr__(self, "_seeder", seeder)
         object.__setattr__(self, "_descent", descent)
         object.__setattr__(self, "_measure", measure)
@@ -163,7 +163,7 @@ class IKSolver:
         if first is not None:
             instance(Refinement, first=first)
         if self._descent is None and problem.wishes:
-            raise InvalidSetting("wishes take a refiner, e.g. IKSolver('gwo', 'dls')")
+            raise InvalidSetting("wishes need a refiner, e.g. IKSolver('gwo', 'dls')")
         if self.select == "clearance":
             world_of(problem)
         if q0 is not None:

@@ -179,7 +179,7 @@ class Limits:
             InvalidBounds: If the range is crossed or NaN, or leaves the leader no room.
         """
         if leader not in self.names:
-            raise InvalidBounds(f"{leader!r} is none of the joints of these limits: {', '.join(self.names)}")
+            raise InvalidBounds(f"{leader!r} is not one of the joints of these limits: {', '.join(self.names)}")
         scale, shift = _pair(follower, line)
         low, high = _pair(follower, span)
         if not np.isfinite([scale, shift]).all():

@@ -44,7 +44,7 @@ class Box:
         with np.errstate(over="ignore"):
             too_wide = np.flatnonzero(~np.isfinite(upper - lower))
         for index in too_wide:
-            raise InvalidBounds(f"bounds at index {index} are further apart than a float can say")
+            raise InvalidBounds(f"bounds at index {index} are so far apart that their difference overflows")
         object.__setattr__(self, "lower", lower)
         object.__setattr__(self, "upper", upper)
         object.__setattr__(self, "_rows", (lower[None], upper[None]))

@@ -41,7 +41,8 @@ class Grid:
         positive("spacing", self.spacing)
         if not (lower <= upper).all():
             raise InvalidBounds(
-                f"the lower corner of a grid is not above its upper one, got {self.lower}, {self.upper}"
+                "the corners of a grid are finite, the lower one not above the upper one, got "
+                f"{self.lower}, {self.upper}"
             )
         if np.prod((upper - lower) / self.spacing + 1.0) > MOST:
             raise InvalidSetting(f"a grid has at most {MOST:,} positions: take a larger spacing than {self.spacing}")
@@ -62,7 +63,7 @@ class Grid:
         positive("spacing", spacing)
         reach = chain.reach(0, False)
         if not math.isfinite(reach.most):
-            raise InvalidSetting("nothing bounds how far this chain reaches: give a grid its corners")
+            raise InvalidSetting("the reach of this chain is not bounded: make a Grid of two corners")
         low, high = (np.floor(side * (reach.anchor + side * reach.most) / spacing) * side for side in (-1.0, 1.0))
         a, b, c = (spacing * low).tolist()
         d, e, f = (spacing * high).tolist()

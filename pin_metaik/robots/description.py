@@ -147,7 +147,7 @@ class Description:
         children = {joint.get("name", ""): child.get("link", "") for joint in motion.iterfind("joint")
                     if (child := joint.find("child")) is not None}  # fmt: skip
         if lost := [link for name, link in children.items() if not model.existFrame(name)]:
-            raise InvalidModel(f"{self.what} has links that hang on no root, but on each other: {', '.join(lost)}")
+            raise InvalidModel(f"{self.what} has links that are joined in a circle, without a root: {', '.join(lost)}")
         if renamed:
             with_own_names(model)
         model, contradictions = coupled(model, couplings)
@@ -182,7 +182,7 @@ class Description:
 
     def _read_mjcf(self) -> tuple[pin.Model, list[str]]:
         if self.base != "fixed":
-            raise InvalidModel(f"{self.what} is MJCF: what joins its base to the world is said there, by <freejoint/>")
+            raise InvalidModel(f"{self.what} is MJCF, which defines the joint of its base itself, e.g. by <freejoint/>")
         with self._file() as path, caught_prints() as prints:
             try:
                 model = pin.buildModelFromMJCF(path)

@@ -188,4 +188,4 @@ def _shift(axis: Literal["x", "z"], length: float) -> Array:
 
 def _one_of(key: str, value: object, known: tuple[str, ...]) -> None:
     if value not in known:
-        raise InvalidTable(f"{key} = {value!r} is none of {', '.join(known)}")
+        raise InvalidTable(f"{key} = {value!r} is not one of {', '.join(known)}")

@@ -90,7 +90,9 @@ class TimedPath:
             InvalidSetting: If ``every`` is not above 0, or more than a million samples would be needed.
         """
         if not every > 0.0 or self.duration > MANY * every:
-            raise InvalidSetting(f"every is above 0 s and not a {MANY:,}th of {self.duration:g} s, got {every!r}")
+            raise InvalidSetting(
+                f"every is above 0 s and makes at most {MANY:,} samples of {self.duration:g} s, got {every!r}"
+            )
         count = math.ceil(self.duration / every * (1.0 - 1e-12))
         return self.at(np.append(every * np.arange(count), self.duration))
 

@@ -361,7 +361,7 @@ def test_folders_from_before_robots_travelled_are_read(whole: Path, tmp_path: Pa
     [
         ("suite.json", lambda text: text.replace('"budget"', '"bugdet"'), "unknown key 'bugdet'"),
         ("suite.json", lambda text: text.replace('"about"', '"around"'), "unknown key 'around'"),
-        ("suite.json", lambda text: text.replace('"rng"', '"absent"'), "the key 'absent' is there twice"),
+        ("suite.json", lambda text: text.replace('"rng"', '"absent"'), "the key 'absent' occurs twice"),
         ("suite.json", lambda text: json.dumps({"robots": json.loads(text)["robots"]}), "is missing"),
         ("suite.json", lambda text: text.replace('"tasks": 3', '"tasks": "3"'), "tasks: expected a whole number"),
         ("suite.json", lambda text: text[:-9], "is not JSON"),

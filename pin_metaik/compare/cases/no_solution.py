@@ -52,7 +52,7 @@ def draw(chain: Chain, rng: np.random.Generator) -> Task:
         vain += 1
         if vain == VAIN:
             break
-    raise NoTask("of the random orientations at positions that it reaches none is proved to have no solution")
+    raise NoTask("no random orientation at a reachable position was proved to have no solution")
 
 
 def _unit(rng: np.random.Generator) -> NDArray[np.float64]:

@@ -93,7 +93,9 @@ class Trial:
         """A trial from a row read back from JSON."""
         fields = Trial.__dataclass_fields__
         if wrong := fields.keys() ^ row.keys():
-            raise InvalidSetting(f"a row of a comparison has the keys {', '.join(fields)}, and {min(wrong)!r} differs")
+            raise InvalidSetting(
+                f"a row of a comparison has the keys {', '.join(fields)}; {min(wrong)!r} is missing or unknown"
+            )
         vectors = {name: None if row[name] is None else tuple(row[name]) for name in ("x", "curve")}
         return Trial(**{**row, **vectors})
 

@@ -47,7 +47,7 @@ class Distance(OfFrame):
         if self.least < 0.0:
             raise InvalidTarget(f"a distance is at least 0, got {self.least:g}")
         if self.least == 0.0 and self.most == math.inf:
-            raise InvalidTarget("any distance from 0 to inf asks for nothing: give a bound")
+            raise InvalidTarget("a distance from 0 to inf is always met: give least or most")
         object.__setattr__(self, "_origin", as_point("point", self.point))
 
     def _values(self, at: Placed) -> Array:

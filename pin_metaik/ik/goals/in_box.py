@@ -46,7 +46,7 @@ class InBox(OfFrame):
         if not (lower <= upper).all() or (lower == np.inf).any() or (upper == -np.inf).any():
             raise InvalidTarget(f"a box is from its lower to its upper corner, got {lower} to {upper}: it is empty")
         if not (np.isfinite(lower).any() or np.isfinite(upper).any()):
-            raise InvalidTarget("this box is everywhere: give a bound")
+            raise InvalidTarget("this box has no bound: give at least one")
         into = pin.SE3.Identity() if self.pose is None else as_pose(self.pose).placement.inverse()
         for name, value in (("lower", lower), ("upper", upper), ("_into", into)):
             object.__setattr__(self, name, value)

@@ -130,7 +130,7 @@ def _desired(closure: Closure) -> tuple[pin.SE3, bool]:
                 f"FrameAnchorConstraintModel, got {shown(closure)}"
             )
     if not heeded:
-        raise InvalidTarget(f"Pinocchio does not heed {desired} of this constraint: make it part of joint2_placement")
+        raise InvalidTarget(f"Pinocchio ignores {desired} of this constraint: make it part of joint2_placement")
     return pin.SE3.Identity(), oriented
 
 

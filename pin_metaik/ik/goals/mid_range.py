@@ -49,7 +49,7 @@ class MidRange(Bounded):
             InvalidTarget: If none of its joints has two limits and a range between them.
         """
         if not len(_ranges(chain)[0]):
-            raise InvalidTarget(f"no joint of {chain} has two limits to be in the middle of")
+            raise InvalidTarget(f"no joint of {chain} has two finite limits, and so a middle")
 
     def _values(self, at: Placed) -> Array:
         columns, middle, half = _ranges(at.chain)

@@ -31,7 +31,7 @@ class Aimed(OfFrame):
     def _aim_with(self, axis: Direction) -> None:
         """Take an axis of the frame; raises InvalidTarget for none, or a tolerance of half a turn and more."""
         if self.tolerance >= math.pi:
-            raise InvalidTarget(f"tolerance is below pi, which every direction is within, got {self.tolerance:g}")
+            raise InvalidTarget(f"tolerance is below pi rad, as every direction is within pi, got {self.tolerance:g}")
         object.__setattr__(self, "_axis", as_direction("axis", axis))
 
     @abstractmethod

@@ -100,7 +100,9 @@ class Curve:
     def places(self, step: float = STEP) -> Array:
         """Arc lengths (n,), in m, at equal distances and where pieces begin and end."""
         if not step > 0 or self.length > MANY * step:
-            raise InvalidSetting(f"step is above 0 m and not a {MANY:,}th of {self.length:g} m, got {step!r}")
+            raise InvalidSetting(
+                f"step is above 0 m and makes at most {MANY:,} places on {self.length:g} m, got {step!r}"
+            )
         return np.union1d(np.arange(0.0, self.length, step), self.boundaries)
 
     @cached_property

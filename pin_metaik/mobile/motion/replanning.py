@@ -72,7 +72,7 @@ def plan_in_motion(
     if goal is not None:
         _within_limits("goal", goal, vehicle)
         if goal.omega:
-            raise InvalidSetting(f"goal: it does not turn at the end, got omega = {goal.omega!r}")
+            raise InvalidSetting(f"goal: the turning rate at the end is 0, got omega = {goal.omega!r}")
     solid = read_obstacles(obstacles)
     if not isinstance(path, Path):
         path = Path(array("path", path, "n", 2, error=InvalidGeometry))

@@ -76,7 +76,7 @@ def plan_trajectory(
     keep = vehicle.radius if radius is None else radius
     within("radius", keep, 0)
     if method == "ann" and not isinstance(vehicle, SynchroDrive):
-        raise InvalidSetting(f"ann: networks are learned for a SynchroDrive, {vehicle.name} is none; take dp or de")
+        raise InvalidSetting(f"ann: networks are learned for a SynchroDrive, which {vehicle.name} is not; use dp or de")
     if method == "ann" and isinstance(vehicle, SynchroDrive):
         model = model or learn_turn(vehicle)
     solid = read_obstacles(obstacles)

@@ -208,7 +208,9 @@ class Trajectory:
             InvalidSetting: A dt that is not above zero.
         """
         if not dt > 0 or self.duration > MANY * dt:
-            raise InvalidSetting(f"dt is above 0 s and not a {MANY:,}th of {self.duration:g} s, got {dt!r}")
+            raise InvalidSetting(
+                f"dt is above 0 s and makes at most {MANY:,} samples of {self.duration:g} s, got {dt!r}"
+            )
         return self.at(np.union1d(np.arange(0.0, self.duration, dt), self._begins))
 
     @checked

@@ -117,9 +117,9 @@ class _Search:
         """Times (n,) and places of the quickest motion, waits included."""
         first = next((k for k, (low, high) in enumerate(self.windows(0)) if low <= self.begin < high), None)
         if first is None:
-            raise self.none(f"something that moves is over the start at {self.begin:g} s")
+            raise self.none(f"a moving obstacle covers the start at {self.begin:g} s")
         if not self.windows(1) or self.windows(1)[-1][1] < np.inf:
-            raise self.none("something that moves stays over the goal for good")
+            raise self.none("a moving obstacle stays over the goal for ever")
         goal = (1, len(self.windows(1)) - 1)
         arrival: dict[State, float] = {(0, first): self.begin}
         before: dict[State, tuple[State, float]] = {}  # where from, and when it set out
@@ -139,7 +139,7 @@ class _Search:
                 if there < arrival.get(following, np.inf) and following not in settled:
                     arrival[following], before[following] = there, (state, departure)
                     heappush(heap, (there + float(self.to_go[following[0]]), next(order), following))
-        raise self.none("whatever waits are made, every way over these places meets something that moves")
+        raise self.none("with any waits, every path over these places meets a moving obstacle")
 
     def windows(self, node: int) -> Windows:
         """When a place is free."""

@@ -51,7 +51,8 @@ class OccupancyGrid:
             )
         if not self.resolution * sum(self.occupied.shape) + abs(self.origin[0]) + abs(self.origin[1]) <= FARTHEST:
             raise InvalidGeometry(
-                f"an occupancy grid is within {FARTHEST:g}: {self.occupied.shape} cells of {self.resolution:g} are not"
+                f"an occupancy grid is within {FARTHEST:g} m; {self.occupied.shape} cells of "
+                f"{self.resolution:g} m are not"
             )
 
     @cached_property
@@ -160,7 +161,7 @@ def read_grid(
             return grid_of(values, threshold=threshold or 0.0, unknown=blocks, resolution=width)
         case ".yaml" | ".yml":
             if resolution is not None:
-                raise InvalidGeometry(f"{path} says itself how wide its cells are: leave out the resolution")
+                raise InvalidGeometry(f"{path} has its own resolution: leave out resolution")
             ros = read_ros_map(path)
             above = OCCUPIED - 1 if threshold is None else threshold
             return grid_of(ros.cells, threshold=above, unknown=blocks, resolution=ros.resolution, origin=ros.origin)

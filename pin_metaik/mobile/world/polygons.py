@@ -118,7 +118,7 @@ def _interface(source: Any, place: str) -> Mapping[str, Any] | None:
     except Exception as error:  # of anybody's class
         raise InvalidGeometry(f"{place} has a __geo_interface__ that cannot be read: {error}") from None
     if mapping is not None and not isinstance(mapping, Mapping):
-        raise InvalidGeometry(f"{place} has a __geo_interface__ that is no GeoJSON mapping: {shown(mapping)}")
+        raise InvalidGeometry(f"{place} has a __geo_interface__ that is not a GeoJSON mapping: {shown(mapping)}")
     return mapping
 
 

@@ -69,7 +69,9 @@ def random_scene(
                 placed.append(polygon)
                 break
         else:
-            raise InvalidSetting(f"only {i} of {obstacles} obstacles fit: fewer, a smaller fill, or a smaller gap")
+            raise InvalidSetting(
+                f"only {i} of {obstacles} obstacles fit: ask for fewer, a smaller fill or a smaller gap"
+            )
     return Scene(start, goal, tuple(placed[2:]), (0.0, 0.0, size, size), name)
 
 

@@ -126,7 +126,7 @@ def load_scene(
     }
     if suffix not in GRIDS and any(said.values()):
         about = ", ".join(key for key, value in said.items() if value)
-        raise InvalidSetting(f"{about}: that is for an occupancy grid ({', '.join(GRIDS)}), and {source} is none")
+        raise InvalidSetting(f"{about}: only for an occupancy grid ({', '.join(GRIDS)}), which {source} is not")
     match suffix:
         case ".json" | ".geojson":
             return scene_of(_read(path), path.stem, start, goal)

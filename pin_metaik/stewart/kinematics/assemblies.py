@@ -108,7 +108,9 @@ def all_forward(geometry: Geometry, coordinates: ArrayLike, rng: int | np.random
         InvalidGeometry: A singular mechanism: its platform can move while the legs are held.
     """
     if geometry.n < MOST_LEGS:
-        raise InvalidSetting(f"{geometry.n} legs leave {MOST_LEGS - geometry.n} freedoms: their poses are not separate")
+        raise InvalidSetting(
+            f"{geometry.n} legs leave {MOST_LEGS - geometry.n} degrees of freedom: assemblies need six legs"
+        )
     d = as_coordinates(geometry, coordinates)
     if len(d) != 1:
         raise InvalidConfiguration(f"all assemblies are found for one set of coordinates, got {len(d)}")

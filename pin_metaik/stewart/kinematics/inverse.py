@@ -36,7 +36,7 @@ def inverse(geometry: Geometry, poses: PoseLike, branches: int | tuple[int, ...]
     actuation = geometry.actuation
     if branches is not None:
         if geometry.servos is None:
-            raise InvalidSetting("legs that are slides have no branches; those of servos have two each")
+            raise InvalidSetting("linear actuators have no branches; servos have two each")
         actuation = ServoLegs(replace(geometry.servos, branches=branches))
     return actuation.links(geometry.b, vectors_at(geometry, as_poses(poses)))
 

@@ -137,7 +137,7 @@ class Variables:
             for name in (f"{side}_radius", f"{side}_angles"):
                 if getattr(ranges, name) is not None:
                     raise InvalidBounds(
-                        f"the joints of the {side} are anywhere: give {side} ranges of x, y, z, not {name}"
+                        f"the joints of the {side} are points: give {side} ranges of x, y, z, not {name}"
                     )
         ends, shapes = [], {}
         for name, value in own.items():

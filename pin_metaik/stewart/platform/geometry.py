@@ -105,7 +105,9 @@ class Geometry:
             for name, joints in (("base", base), ("platform", platform))
         ]
         if legs is None and len(sides[0]) != len(sides[1]):
-            raise InvalidGeometry(f"say which legs join which of {len(sides[0])} and {len(sides[1])} joints")
+            raise InvalidGeometry(
+                f"give legs: pairs of one of {len(sides[0])} base and one of {len(sides[1])} platform joints"
+            )
         joined = tuple((i, i) for i in range(len(sides[0]))) if legs is None else tuple(legs)
         place = tuple(array("reference", reference, 3, error=InvalidGeometry).tolist())
         return cls(legs=joined, reference=place, base=sides[0], platform=sides[1], servos=servos)

@@ -189,7 +189,7 @@ def compare_types(
     """
     task = task_of(mechanism)
     if mechanism.geometry.base is not None or mechanism.geometry.platform is not None:
-        raise InvalidSetting("types are compared of platforms with their joints on circles, not anywhere")
+        raise InvalidSetting("types are compared for platforms with their joints on circles, not given as points")
     few("runs", runs, 1)
     radii, legs = (mechanism.geometry.base_radius, mechanism.geometry.platform_radius), mechanism.geometry.n
     servos = mechanism.geometry.servos

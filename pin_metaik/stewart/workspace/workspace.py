@@ -196,7 +196,7 @@ class Workspace:
     def poses(self, which: NDArray[np.bool_]) -> Array:
         """Poses (r, 4, 4) of the grid where `which` (nx, ny, nz, o) is true."""
         if which.shape != self.states.shape:
-            raise InvalidSetting(f"which poses is an array of shape {self.states.shape}, got {which.shape}")
+            raise InvalidSetting(f"which is a boolean array of shape {self.states.shape}, got {which.shape}")
         return self.poses_of(np.argwhere(which))
 
     @property

@@ -61,7 +61,7 @@ class LineTests:
         if not budget.ends:
             raise InvalidBudget("this search might never end: give the budget evaluations=... or seconds=...")
         if budget.target is not None:
-            raise InvalidBudget("a target is for metaheuristics: other planners do not look at a cost")
+            raise InvalidBudget("a target is for metaheuristics: other planners minimise no cost")
         self._core, self._budget, self._watch, self._check = space.core, budget, watch, check
         self._began = perf_counter()
         self.count = 0
