@@ -26,9 +26,9 @@ class DLS:
 
     Each step is dx = -J' (J J' + lambda I)^-1 e over the joints that are not at a limit and pushed outward, with
     lambda = damping |e|^2 + 1e-9. Joints that would cross a limit are put on it, and the step is solved again for the
-    others. A start is given up when four steps have not reduced the error to below 70 % of its value before them. For
-    goals that are evaluated in Python the same steps are taken in NumPy, with ten times the damping, because their
-    residuals are more curved.
+    others. A start is given up when four steps have not reduced the squared error to below 70 % of its value before
+    them. For goals that are evaluated in Python the same steps are taken in NumPy, with ten times the damping, because
+    their residuals are more curved.
 
     Attributes:
         damping: Factor of the squared error in lambda, 1/m^2 or 1/rad^2.
