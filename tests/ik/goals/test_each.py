@@ -228,7 +228,7 @@ class Growing:
 
 REFUSED: dict[str, tuple[type[Exception], str, Callable[[], Any]]] = {
     "an empty box": (InvalidTarget, "it is empty", lambda: goals.InBox("tool0", (1, 1, 1), (0, 2, 2))),
-    "a box everywhere": (InvalidTarget, "everywhere", lambda: goals.InBox("tool0", [-math.inf] * 3, [math.inf] * 3)),
+    "a box everywhere": (InvalidTarget, "has no bound", lambda: goals.InBox("tool0", [-math.inf] * 3, [math.inf] * 3)),
     "distances crossed": (InvalidTarget, "2 to 1", lambda: goals.Distance("tool0", FAR, least=2, most=1)),
     "any distance": (InvalidTarget, "is always met", lambda: goals.Distance("tool0", FAR)),
     "a negative distance": (InvalidTarget, "at least 0", lambda: goals.Distance("tool0", FAR, least=-1, most=1)),
