@@ -1,4 +1,4 @@
-"""Every error this package raises on purpose: one family, each with its values and what would have worked."""
+"""The errors of this package: one family, each with the values given and what would have worked."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``pin-metaik compare``, ``report`` and ``replay``: methods on hard cases, and what became of them."""
+"""``pin-metaik compare``, ``report`` and ``replay``: methods on hard cases, and the report on them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Configurations as the command line names them: joints by name, or all entries of q."""
+"""Configurations on the command line: joints by name, or all entries of q."""
 
 from __future__ import annotations
 

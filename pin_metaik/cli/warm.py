@@ -1,4 +1,4 @@
-"""``pin-metaik warm``: compile every loop and lay out every table now, for a container or before a demonstration."""
+"""``pin-metaik warm``: compile every loop ahead of use, for a container or before a demonstration."""
 
 from __future__ import annotations
 

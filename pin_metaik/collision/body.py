@@ -1,4 +1,4 @@
-"""Bodies: the pieces of geometry that a world checks against each other, of the robot, grasped, or standing around."""
+"""Bodies: the pieces of geometry that a world checks against each other: links, grasped objects and obstacles."""
 
 from __future__ import annotations
 

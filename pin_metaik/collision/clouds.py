@@ -1,4 +1,4 @@
-"""What sensors see, as solids: points with a radius, occupied cells, and fields of heights.
+"""Sensor data as solids: points with a radius, occupied cells, and height fields.
 
 Each is a closed surface of triangles, so that worlds check it as they check any mesh: what is inside collides, too.
 """

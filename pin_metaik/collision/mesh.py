@@ -1,4 +1,4 @@
-"""Triangle meshes: read from a file or given as arrays, and refused when they are not the surface of a solid."""
+"""Triangle meshes, read from a file or given as arrays; refused if they are not the surface of a solid."""
 
 from __future__ import annotations
 

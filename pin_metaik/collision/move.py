@@ -1,4 +1,4 @@
-"""What is known of a straight joint move: that it is free, or where it first touches."""
+"""The result of checking a straight joint move: that it is free, or where it first collides."""
 
 from __future__ import annotations
 

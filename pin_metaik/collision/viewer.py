@@ -1,4 +1,4 @@
-"""Looking at a world in the browser, through Pinocchio's viser visualizer: an extra."""
+"""A world in the browser, by Pinocchio's viser visualizer (the extra ``viewer``)."""
 
 from __future__ import annotations
 

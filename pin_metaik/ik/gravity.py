@@ -1,4 +1,4 @@
-"""What joints must hold against gravity, as a criterion for choosing among solutions."""
+"""Joint torques against gravity, as a criterion for choosing among solutions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An inverse-kinematics problem: the cost that is descended and the test that counts."""
+"""An inverse-kinematics problem: the cost that is minimised and the test that decides."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an inverse-kinematics search ended with, and why."""
+"""The result of an inverse-kinematics search, and the reason for its status."""
 
 from __future__ import annotations
 

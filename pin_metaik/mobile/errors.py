@@ -1,4 +1,4 @@
-"""Errors of planning: a place the robot cannot be in, and two places with no way between them; and a warning."""
+"""Errors of planning: a position where the robot cannot be, two positions without a path between; and a warning."""
 
 from __future__ import annotations
 

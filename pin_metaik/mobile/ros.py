@@ -1,4 +1,4 @@
-"""Out to ROS: paths and motions as ``nav_msgs/Path``, in YAML as ``ros2 topic pub`` takes it, or in JSON."""
+"""Export to ROS: paths and motions as ``nav_msgs/Path``, in YAML for ``ros2 topic pub``, or in JSON."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Follow a target that moves, tick by tick: for teleoperation and servoing."""
+"""Following a moving target tick by tick, for teleoperation and servoing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What one tick of a follower comes to."""
+"""The result of one tick of a follower."""
 
 from __future__ import annotations
 

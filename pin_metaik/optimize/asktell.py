@@ -1,4 +1,4 @@
-"""Ask for points, tell their costs: the search from outside, for objectives that cannot be a Python callable."""
+"""Ask for points, tell their costs: a search driven by its caller, for objectives that cannot be a Python callable."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The protocol of a metaheuristic, and the search as it sees it."""
+"""The protocol of a metaheuristic, and a run of a search."""
 
 from __future__ import annotations
 

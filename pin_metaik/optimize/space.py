@@ -1,4 +1,4 @@
-"""The box a search lives in: one lower and one upper bound per coordinate."""
+"""The search space: one lower and one upper bound for each coordinate."""
 
 from __future__ import annotations
 

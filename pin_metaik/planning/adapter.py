@@ -1,4 +1,4 @@
-"""A chain in a world as OMPL sees it: a space of states, which of them are valid, and which motions."""
+"""A chain in a world for OMPL: a state space, and the validity of states and motions."""
 
 from __future__ import annotations
 

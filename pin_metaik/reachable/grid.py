@@ -1,4 +1,4 @@
-"""Positions and orientations that a map of what can be reached asks for."""
+"""Grids of positions and orientations for maps."""
 
 from __future__ import annotations
 

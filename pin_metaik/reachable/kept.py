@@ -1,4 +1,4 @@
-"""Parts of a map in a folder, so that work goes on where it stopped."""
+"""Parts of a map in a folder, from which interrupted work resumes."""
 
 from __future__ import annotations
 

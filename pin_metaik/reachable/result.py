@@ -1,4 +1,4 @@
-"""A map of what a chain can reach."""
+"""The reachability map of a chain."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Making a map of what a chain can reach: part by part, on all cores or a cluster, and going on where it stopped."""
+"""Making a reachability map part by part, on all cores or a cluster, with resumption after an interruption."""
 
 from __future__ import annotations
 

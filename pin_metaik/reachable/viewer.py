@@ -1,4 +1,4 @@
-"""Looking at a map in the browser, with the robot in it: an extra."""
+"""A map in the browser, with the robot in it (the extra ``viewer``)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The quickest way along a curve within limits of speed and acceleration, by toppra."""
+"""The quickest motion along a curve within limits of speed and acceleration, by toppra."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A way along a curve within limits of jerk as well, by ruckig."""
+"""A motion along a curve within limits of speed, acceleration and jerk, by ruckig."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Paths with times: when a robot is where, within its limits."""
+"""Timed paths: motions along a path within the limits of the joints."""
 
 from __future__ import annotations
 

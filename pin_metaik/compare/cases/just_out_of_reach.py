@@ -1,4 +1,4 @@
-"""Just out of reach: what counts is to say so."""
+"""Just out of reach: success is to report the target as unreachable."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Look at a point: an axis of the tip leads through a point, from a distance; nothing else is asked."""
+"""Look at a point: an axis of the tip points at a point from a distance; everything else is free."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""No solution: a position that the arm reaches, with an orientation that it has not there; what counts is to say so."""
+"""No solution: a reachable position with an orientation that is unreachable there; success is to report that."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Two hands: one is at a place, and sees the other where it grips what both hold."""
+"""Two hands: one hand at a position, the other at a pose relative to it, as for an object that both hold."""
 
 from __future__ import annotations
 

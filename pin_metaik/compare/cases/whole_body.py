@@ -1,4 +1,4 @@
-"""Whole body: a robot on legs stands where it stands, keeps its balance, and reaches."""
+"""Whole body: a legged robot keeps its feet in place and its balance, and reaches."""
 
 from __future__ import annotations
 

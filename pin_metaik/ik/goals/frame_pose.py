@@ -1,4 +1,4 @@
-"""The goal of a pose for any frame of the robot, in the world or as another frame sees it."""
+"""The goal of a pose for any frame of the robot, in the world or relative to another frame."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a goal is, and several goals as one residual."""
+"""The protocol of a goal, and several goals as one residual."""
 
 from __future__ import annotations
 

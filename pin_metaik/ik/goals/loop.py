@@ -1,4 +1,4 @@
-"""The goal of a closed loop: two places on the robot that belong together."""
+"""The goal of a closed kinematic loop: two points or frames of the robot coincide."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The goal of a robot that can move well where it stands."""
+"""The goal of a least manipulability."""
 
 from __future__ import annotations
 

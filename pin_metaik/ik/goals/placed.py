@@ -1,4 +1,4 @@
-"""The robot at one configuration: what a goal looks at."""
+"""The robot at one configuration, as given to goals."""
 
 from __future__ import annotations
 

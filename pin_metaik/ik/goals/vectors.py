@@ -1,4 +1,4 @@
-"""Points, directions and ranges that somebody gives, looked at."""
+"""Checks of points, directions and ranges."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A wish: a goal that is met as well as the others allow."""
+"""A wish: a goal that is improved as far as the others leave freedom."""
 
 from __future__ import annotations
 

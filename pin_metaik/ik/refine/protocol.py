@@ -1,4 +1,4 @@
-"""What a refiner is."""
+"""The protocol of a refiner."""
 
 from __future__ import annotations
 

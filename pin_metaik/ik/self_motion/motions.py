@@ -1,4 +1,4 @@
-"""All self-motions of a target: every curve of solutions inside the limits, and what proves that none is missing."""
+"""All self-motions of a target: every curve of solutions inside the limits, and the proof that none is missing."""
 
 from __future__ import annotations
 

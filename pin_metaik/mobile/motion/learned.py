@@ -1,4 +1,4 @@
-"""The turn as a network learns it: tangent lengths for a speed and an angle, and what their errors cost.
+"""Turns learned by a network: tangent lengths for a speed and an angle, and the effect of their errors.
 
 The closed form needs none of this: the tangent length is the speed times a function of the angle. It is here because a
 paper planned with it, and because it shows what a network's error of a few millimetres does to a robot.

@@ -1,4 +1,4 @@
-"""A path as the planner of speeds sees it: a chain of lengths and turns, each corner with the speed it allows."""
+"""A path for the planner of speeds: lengths and turns, and for each corner the largest speed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An obstacle that moves without turning: an outline, and where it is when."""
+"""An obstacle that moves without turning: an outline, and its position over time."""
 
 from __future__ import annotations
 

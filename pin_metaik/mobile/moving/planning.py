@@ -1,8 +1,8 @@
-"""The quickest way over a graph of places among obstacles that move: A* over places and windows of time.
+"""The quickest path over a graph of places among moving obstacles: A* over places and time windows.
 
-The graph is extended by time without steps of time: a place is free in windows, within one of which an earlier arrival
-is never worse, because the robot can wait (safe interval path planning, Phillips and Likhachev 2011). The windows, and
-the times at which a line may be driven, are computed from the motions of the obstacles, not sampled.
+Time is not discretised: a place is free in windows, within one of which an earlier arrival is never worse, because the
+robot can wait (safe interval path planning, Phillips and Likhachev 2011). The windows, and the times at which a line
+may be driven, are computed from the motions of the obstacles, not sampled.
 """
 
 from __future__ import annotations

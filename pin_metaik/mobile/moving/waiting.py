@@ -1,4 +1,4 @@
-"""A path with times: straight lines at one speed, and waits between them; and what it is worth by a test of its own."""
+"""A path with times: straight lines at one speed, and waits between them; and its clearance, tested independently."""
 
 from __future__ import annotations
 

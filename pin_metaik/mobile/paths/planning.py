@@ -1,4 +1,4 @@
-"""Planning a path: exactly, by a metaheuristic over via points, or by what others made.
+"""Planning a path: exactly, by a metaheuristic over via points, or by a planner of another package.
 
 However it is planned, the exact test has the last word.
 """

@@ -1,4 +1,4 @@
-"""A planning problem: a scene, the clearance to keep, and what can be worked out once for all planners."""
+"""A planning problem: a scene, the clearance to keep, and data that all planners share."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Obstacles in, from whatever holds them: vertex lists, shapely, WKT, GeoJSON and files of the last two."""
+"""Reading obstacles: vertex lists, shapely geometries, WKT, GeoJSON, and files of the last two."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The mechanism in Pinocchio: an open tree from its URDF, and a ``PointAnchorConstraintModel`` for each loop.
 
-Everything here is known in closed form elsewhere in this package; it is here for dynamics, and as a check by somebody
-else's code. Closed form is what grids and designs use.
+Everything here is known in closed form elsewhere in this package, which is what grids and designs use; this model is
+for dynamics, and an independent check by Pinocchio.
 """
 
 from __future__ import annotations

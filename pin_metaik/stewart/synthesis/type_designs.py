@@ -1,4 +1,4 @@
-"""The types of platforms side by side: one task, a design of each, and what came of it."""
+"""Comparison of the types of platforms: a design of each type for the same task."""
 
 from __future__ import annotations
 

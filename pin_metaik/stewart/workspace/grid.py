@@ -1,4 +1,4 @@
-"""Where a workspace is looked for: a grid of positions, at one orientation or at several."""
+"""The grid of a workspace: positions, at one orientation or at several."""
 
 from __future__ import annotations
 

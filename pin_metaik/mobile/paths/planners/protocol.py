@@ -1,4 +1,4 @@
-"""What a path planner is: it looks for a path of a problem, and the straight lines that it tests are counted."""
+"""The protocol of a path planner: it searches a path for a problem, and its tests of straight lines are counted."""
 
 from __future__ import annotations
 
