@@ -45,7 +45,7 @@ def draw(chain: Chain, rng: np.random.Generator) -> Task:
 
 TWO_HANDS = Case(
     "two_hands",
-    "One hand at a place, the other where the first one sees it, as in a random configuration of both arms.",
+    "One hand at a position, the other at a pose relative to it, as in a random configuration of both arms.",
     draw,
     chain=both_hands,
     success=BY_GOALS,

@@ -87,8 +87,8 @@ def _ground(feet: list[Array], half: float) -> Array:
 
 WHOLE_BODY = Case(
     "whole_body",
-    "Feet fixed, centre of mass over them, hands (or on three and more feet the base) at poses that a body reaches "
-    "which stands and balances.",
+    "Feet fixed, centre of mass over them, hands (with three or more feet the base) at the poses of a random balanced "
+    "posture.",
     draw,
     chain=standing,
     success=BY_GOALS,

@@ -69,7 +69,7 @@ class Outcome:
     def __str__(self) -> str:
         fresh = f"{self.fresh:,} of them now, in {self.seconds:.0f} s"
         errors = f"; {self.errors:,} raised an error, most often {self.error}" if self.errors else ""
-        state = "interrupted: the same command goes on from here" if self.partial else "done"
+        state = "interrupted: the same command resumes from here" if self.partial else "done"
         without = [f"without {line}" for line in self.absent]
         return "\n".join([*without, f"{self.done:,} of {self.planned:,} rows, {fresh}{errors}: {state}"])
 
