@@ -86,7 +86,7 @@ def _header(content: bytes) -> tuple[str, list[Element], int]:
     end = content.find(END)
     start = content.find(b"\n", end) + 1
     if not content.startswith(b"ply") or end < 0 or start == 0:
-        raise ValueError("its header is incomplete")
+        raise ValueError("its header is not whole")
     form, elements = "", list[Element]()
     for line in content[:end].decode("latin-1").splitlines():
         match line.split():

@@ -146,10 +146,10 @@ def _read(path: Path, in_degrees: bool) -> list[pin.SE3] | NDArray[np.float64]:
         except ValueError:
             if number:
                 raise InvalidTarget(
-                    f"{path}: row {number + 1} has values that are not numbers: {','.join(line)}"
+                    f"{path}: row {number + 1} has words that are no numbers: {','.join(line)}"
                 ) from None
     if not rows or {len(row) for row in rows} not in ({3}, {6}):
-        raise InvalidTarget(f"{path}: all rows are x,y,z or all are x,y,z,roll,pitch,yaw, and there is at least one")
+        raise InvalidTarget(f"{path}: each row is x,y,z or x,y,z,roll,pitch,yaw, the same in all, and there is one")
     if len(rows[0]) == 3:
         return np.array(rows)
     turn = radians(1.0) if in_degrees else 1.0

@@ -43,7 +43,7 @@ def warm(
     print(
         f"compiled {len(todo)} of {len(loops)} loops in {spent:.1f} s, stored in {folder}"
         if todo
-        else f"all {len(loops)} loops are compiled already"
+        else f"all {len(loops)} loops are there"
     )
     for why in missing:
         print(f"left out: {why}")

@@ -294,7 +294,7 @@ class Chain:
 
     @cached_property
     def _tangents(self) -> tuple[NDArray[np.float64], list[tuple[pin.JointModel, slice, slice]]]:
-        """(nv, n) the part of ``tangent`` that does not depend on x, and joints with several coordinates, to be added."""
+        """(nv, n) the part of ``tangent`` that does not depend on x, and the joints with several coordinates."""
         constant, varying = np.zeros((self.model.nv, self.n)), []
         for joint, column in self.coordinates.columns.items():
             kind = self.model.joints[joint]
