@@ -153,8 +153,8 @@ def solve_ik_path(
             joint.
         solver: Its refiner finds the solutions of each pose, with its budget of evaluations for each; where the refiner
             finds none, the solver searches for one. Its ``select`` is not used: of the solutions of each pose, those
-            that make the shortest path through all poses are taken. Default: damped least squares, 10,000 evaluations a
-            pose.
+            are taken that make the best path through all poses: with the fewest breaks, then the fewest changes of
+            branch, then the shortest. Default: damped least squares, 10,000 evaluations a pose.
         world: What must not collide at any of the poses and on the straight joint moves between them, which is proved
             (``CollisionWorld.clear_between``).
         reconfigure: Whether to look, where the path breaks, for a joint move to the next pose: the straight one if it
