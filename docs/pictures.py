@@ -110,7 +110,9 @@ def shelf_path(file: Path) -> None:
                     draw.text((12, 30), "collides", fill=(200, 30, 25), font=ImageFont.load_default(16))
                 panels[-1].append(panel)
     viewer.viewer.stop()
-    there = [Image.fromarray(np.hstack([np.asarray(one), np.asarray(other)])) for one, other in zip(*panels, strict=True)]
+    there = [
+        Image.fromarray(np.hstack([np.asarray(one), np.asarray(other)])) for one, other in zip(*panels, strict=True)
+    ]
     small = [frame.quantize(COLOURS, dither=Image.Dither.NONE) for frame in [*there, *there[-2:0:-1]]]
     shown = json.dumps([path.q[::2].round(6).tolist() for path in (alone, clear)])  # for whoever finds the file
     small[0].save(file, save_all=True, append_images=small[1:], duration=EACH, loop=0, comment=shown, optimize=True)
@@ -181,7 +183,9 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "shelf.png": shelf,
     "shelf_path.gif": shelf_path,
     "self_motions.png": self_motions,
-    "path_generations.png": printed("mobile", "evolve", "ten_obstacles", "--method", "pso", "-o", "it.png", made="it.png"),
+    "path_generations.png": printed(
+        "mobile", "evolve", "ten_obstacles", "--method", "pso", "-o", "it.png", made="it.png"
+    ),
     "path_planners.png": printed(
         "mobile", "compare", "ten_obstacles", "--runs", 10, "--out", "together", made="together/planners_paths.png"
     ),
