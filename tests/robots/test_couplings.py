@@ -195,11 +195,11 @@ MEANINGLESS = {
     ),
     "a leader with six degrees of freedom": (
         robot(joint("a", "base", "a", "floating"), joint("b", "a", "b", mimic='joint="a"')),
-        "'b' mimics 'a', but 'a' (floating) has several coordinates: it is free",
+        r"'b' mimics 'a', but 'a' \(floating\) has several coordinates: it is free",
     ),
     "a follower with three": (
         robot(joint("a", "base", "a"), joint("b", "a", "b", "planar", mimic='joint="a"')),
-        "'b' mimics 'a', but 'b' (planar) has several coordinates: it is free",
+        r"'b' mimics 'a', but 'b' \(planar\) has several coordinates: it is free",
     ),
 }
 

@@ -1,4 +1,4 @@
-"""How the legs of a platform are actuated: the protocol of a leg, and legs that are slides.
+"""How the legs of a platform are actuated: the protocol of a leg, and legs that are linear actuators.
 
 Every leg ends in a straight link between two joints. The link of a slide begins in the base joint and changes its
 length; that of a servo is a rod of fixed length, which begins at the tip of a horn. Whatever is said about a platform

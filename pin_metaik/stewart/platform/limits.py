@@ -192,7 +192,7 @@ Limits: TypeAlias = LegLimits | ServoLimits
 
 def fit(limits: JointLimits, geometry: Geometry) -> None:
     """Raise InvalidGeometry unless these are limits of such legs."""
-    kind, needed = ("slides", LegLimits) if geometry.servos is None else ("servos", ServoLimits)
+    kind, needed = ("linear actuators", LegLimits) if geometry.servos is None else ("servos", ServoLimits)
     if not isinstance(limits, needed):
         raise InvalidGeometry(f"legs that are {kind} have {needed.__name__}, got {type(limits).__name__}")
 

@@ -33,8 +33,8 @@ class Singularities:
         nearest: The pose (4, 4) reached that has the lowest nu.
         nu: The nu of ``nearest``; 0 if it is singular.
         transmission: The least transmission of a servo at the poses reached: 0 in a singularity of the first kind,
-            where a rod is in line with its horn and its two branches meet; 1 for slides, which have none.
-        weakest: The pose (4, 4) with that transmission; None for slides.
+            where a rod is in line with its horn and its two branches meet; 1 for linear actuators, which have none.
+        weakest: The pose (4, 4) with that transmission; None for linear actuators.
     """
 
     verdict: Verdict
