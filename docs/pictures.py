@@ -2,7 +2,7 @@
 
 python docs/pictures.py                 # draws all of them into docs/images
 python docs/pictures.py shelf.png       # or one
-python docs/pictures.py --check         # draws those that need no browser elsewhere and compares: exit code 1 if one is stale
+python docs/pictures.py --check         # draws those that need no browser elsewhere: exit code 1 if one is stale
 
 The pictures of the gallery are not among these: they are drawn whenever the site is built.
 """
