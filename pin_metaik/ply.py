@@ -64,7 +64,7 @@ def read_ply(path: Path, error: Error) -> tuple[Numbers, NDArray[np.int64]]:
         form, elements, start = _header(content)
         take = _binary(content[start:], FORMS[form]) if FORMS[form] else _text(content[start:])
         if sum(element.count for element in elements) > len(content):
-            raise ValueError("its length does not match its number of rows")
+            raise ValueError("it has not as many bytes as rows")
         rows = {element.name: element.rows(take) for element in elements}
         vertices = np.array([[row[axis][0] for axis in "xyz"] for row in rows["vertex"]]).reshape(-1, 3)
         faces = [next(row[name] for name in CORNERS if name in row) for row in rows["face"]]

@@ -301,7 +301,7 @@ class CollisionWorld:
         return self.checker.contacts(as_configuration(self.model, q))
 
     def min_distance(self, q: ArrayLike) -> Distance:
-        """The two bodies nearest to each other at configuration q (nq,) and their nearest points, without the margin.
+        """The two bodies nearest to each other at configuration q (nq,), and where; the margin does not count.
 
         Raises:
             InvalidConfiguration: If q is not a configuration of the model.
