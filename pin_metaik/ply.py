@@ -73,7 +73,7 @@ def read_ply(path: Path, error: Error) -> tuple[Numbers, NDArray[np.int64]]:
     except (KeyError, StopIteration):
         raise error(f"{path} is not a PLY mesh: it lacks x, y, z or triangles, or has an unknown type") from None
     except (ValueError, OverflowError) as reason:  # the latter of a length that is infinite
-        raise error(f"{path} is not a PLY mesh: {reason}") from None
+        raise error(f"{path} is no mesh in PLY: {reason}") from None
     parts = [(face[0], b, c) for face in faces for b, c in zip(face[1:-1], face[2:], strict=True)]
     corners = np.array(parts, dtype=float).reshape(-1, 3)
     if not ((corners >= 0.0) & (corners < len(vertices)) & (corners == np.floor(corners))).all():
