@@ -41,8 +41,7 @@ class Grid:
         positive("spacing", self.spacing)
         if not (lower <= upper).all():
             raise InvalidBounds(
-                "the corners of a grid are finite, the lower one not above the upper one, got "
-                f"{self.lower}, {self.upper}"
+                f"a grid has finite corners, the lower corner not above the upper one, got {self.lower}, {self.upper}"
             )
         if np.prod((upper - lower) / self.spacing + 1.0) > MOST:
             raise InvalidSetting(f"a grid has at most {MOST:,} positions: take a larger spacing than {self.spacing}")
