@@ -183,7 +183,7 @@ def test_a_picture_of_a_map(ur5_map: Reachability, tmp_path: Path, listed: bool)
 
 def test_bad_input_is_told_by_name(tmp_path: Path) -> None:
     chain = chain_of("ur5")
-    with pytest.raises(InvalidBounds, match="the lower one not above the upper one"):
+    with pytest.raises(InvalidBounds, match="lower corner"):
         Grid((1.0, 0.0, 0.0), (0.0, 1.0, 1.0), 0.1)
     with pytest.raises(InvalidSetting, match="at most"):
         Grid((0.0, 0.0, 0.0), (10.0, 10.0, 10.0), 0.01)
