@@ -146,10 +146,10 @@ def load_robot(
     link; these lines are also in ``robot.remarks``.
 
     Args:
-        name: A name of the catalogue or of example-robot-data (see ``robot_names``); the path of a URDF, of an MJCF or
-            of a DH table (``.toml``); the text of a URDF or an MJCF; or a module with a path ``URDF_PATH`` or
-            ``MJCF_PATH``, such as those of the package robot_descriptions. A URDF may be a xacro file, which the extra
-            ``xacro`` expands.
+        name: Name in the catalogue or in example-robot-data (also as ``robot_names`` gives it), path of a URDF, of an
+            MJCF or of a DH table's ``.toml``, the text of a URDF or an MJCF, or a module that has its path as
+            ``URDF_PATH`` or ``MJCF_PATH``, as those of the package robot_descriptions. A URDF may be xacro, which the
+            extra ``xacro`` expands: its expressions are run as Python, so take none from strangers.
         parameters: Values that replace those of a DH table's ``[parameters]``, in the table's units, or of the
             ``<xacro:arg>`` of a xacro file.
         free_flyer: Let the base move freely: six more coordinates. A chain needs limits for ``root_joint.x``, ``.y``
