@@ -109,10 +109,8 @@ def solve(
         ),
     ] = None,
     seeder: Annotated[str, typer.Option(help=f"Where starts come from: {SEEDERS}.")] = "auto",
-    refiner: Annotated[
-        str, typer.Option(help=f"Local method that refines them: {', '.join(REFINERS)} or none.")
-    ] = "dls",
-    evaluations: Annotated[int, typer.Option(help="Budget: largest number of forward kinematics.")] = EVALUATIONS,
+    refiner: Annotated[str, typer.Option(help=f"What refines them: {', '.join(REFINERS)} or none.")] = "dls",
+    evaluations: Annotated[int, typer.Option(help="Forward kinematics that may be spent.")] = EVALUATIONS,
     world: Annotated[
         str | None,
         typer.Option(

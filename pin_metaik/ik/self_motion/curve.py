@@ -130,10 +130,10 @@ class SelfMotionCurve:
         return self.q(np.linspace(0.0, self.length, 1 + int(np.ceil(self.length / step))))
 
     def nearest(self, q: ArrayLike) -> CurvePoint:
-        """The point nearest to a configuration (nq,), rad and m weighted alike; angles the shorter way round.
+        """The point with the least distance from a configuration (nq,), rad and m alike; angles the shorter way round.
 
-        It is the nearest of the whole curve to within 1e-4, because a distance changes by no more than the joints move.
-        Where limits exclude copies by whole turns it is found as in ``best``, without that guarantee.
+        It is the nearest of the whole curve, to 1e-4, as a distance changes by no more than the joints move; but where
+        limits cut off copies by whole turns, as ``best`` finds it.
         """
         x = self.problem.chain.x(array("q", q, self.problem.chain.model.nq, error=InvalidConfiguration))
         measure = measure_of("nearest")
@@ -145,9 +145,9 @@ class SelfMotionCurve:
 
         Args:
             criterion: As for ``IKSolver.select``: a name, or a function of a configuration (nq,). For ``"nearest"`` (to
-                ``q0``) and ``"limits"`` the result is the best of the whole curve to within 1e-4, if no joint has
-                finite limits a whole turn or more apart. Any other criterion is evaluated at every point of ``x``, and
-                minimised around each point that is better than its two neighbours.
+                ``q0``) and ``"limits"`` it is the best of the whole curve, to 1e-4, where no joint has finite limits
+                that leave room for a whole turn; others are looked at in every point ``x``, and between the neighbours
+                of each that is better than these.
 
         Raises:
             UnknownName: No criterion of that name.
