@@ -18,7 +18,7 @@ from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.collect import collect
 from pin_metaik.ik.goals.pose import Target
 from pin_metaik.ik.labels import labels_of
-from pin_metaik.ik.plain_all import ENOUGH, ROOTS, all_of_plain
+from pin_metaik.ik.plain_all import ENOUGH, FOR_ROOTS, ROOTS, all_of_plain
 from pin_metaik.ik.problem import Asked, IKProblem, check_world
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.result import Parts
@@ -180,7 +180,7 @@ def solve_ik_all(
         raise InvalidSetting("all solutions are found by a refiner: give the solver one, e.g. IKSolver(refiner='dls')")
     began = perf_counter()
     chain = chain if q0 is None else chain.at(q0)
-    if limit >= ROOTS and budget.seconds is None and budget.evaluations >= ENOUGH and watch is None:
+    if limit >= ROOTS and budget.seconds is None and budget.evaluations >= ENOUGH + FOR_ROOTS and watch is None:
         plain = all_of_plain(chain, target, q0, solver.descent, apart, certify)
         if plain is not None:
             q = plain.q

@@ -364,11 +364,14 @@ class Chain:
         """What finds all configurations for a pose, real and complex; made on first use, in about 0.1 s."""
         return six_joints(self.paths)
 
-    def _configurations(self, pose: NDArray[np.float64]) -> Configurations | None:
-        """All configurations for a world pose (4, 4) of the frame; None, if this is no chain of six of one frame."""
+    def _configurations(self, pose: NDArray[np.float64], most: int) -> Configurations | None:
+        """All configurations for a world pose (4, 4) of the frame; None, if this is no chain of six of one frame.
+
+        They are those that ``most`` evaluations find.
+        """
         if self._moves is not None:
-            return self._original._configurations(np.linalg.inv(self._moves[0]) @ pose)
-        return None if self._six_joints is None else self._six_joints.at(pose)
+            return self._original._configurations(np.linalg.inv(self._moves[0]) @ pose, most)
+        return None if self._six_joints is None else self._six_joints.at(pose, most)
 
     def _boxes(
         self,
