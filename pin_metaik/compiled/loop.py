@@ -15,6 +15,7 @@ from typing import Any, cast
 import numba
 
 from pin_metaik.compiled.on_disk import MachineCode
+from pin_metaik.compiled.types_of_calls import found_out_once
 from pin_metaik.interrupts import Pressed
 
 # Other threads may run meanwhile; division by zero gives inf as in C.
@@ -79,7 +80,7 @@ class Loop:
             loop = numba.njit(fastmath=LOOSE, no_cfunc_wrapper=True, **OPTIONS)(self.function)
             loop._cache = self.machine_code
             signature = self.signatures[without]
-            with nullcontext() if loop._cache.has(signature) else loop._cache.turn():
+            with nullcontext() if loop._cache.has(signature) else loop._cache.turn(), found_out_once():
                 loop.compile(signature)
             loop.disable_compile()
             pressed.check()

@@ -16,7 +16,7 @@ from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from pickle import UnpicklingError
-from typing import Any
+from typing import Any, cast
 
 from numba.core import caching, config
 from numba.core.registry import cpu_target
@@ -150,6 +150,9 @@ class _Implementation(caching.CompileResultCacheImpl):
         self._locator = _Locator(function, folder)
         name = f"{Path(function.__code__.co_filename).stem}.{function.__qualname__}"
         self._filename_base = self.get_filename_base(name, getattr(sys, "abiflags", ""))
+
+    def reduce(self, code: Any) -> tuple[Any, ...]:
+        return cast(tuple[Any, ...], super().reduce(parts.lean(code)))
 
     def rebuild(self, target_context: Any, payload: tuple[Any, ...]) -> Any:
         return parts.read(target_context, payload) or super().rebuild(target_context, payload)
