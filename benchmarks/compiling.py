@@ -178,9 +178,9 @@ def label(module: str, name: str, without: bool) -> str:
     return f"{module.removeprefix('pin_metaik.')}.{name}{', without' if without else ''}"
 
 
-def compiled(own: Place, before: Place | None) -> tuple[dict[str, float], list[str]]:
+def compiled(now: Place, before: Place | None) -> tuple[dict[str, float], list[str]]:
     """Seconds by loop, and rows of seconds by phase: before, if that is asked for, and now."""
-    running = [place.started(LOOPS) for place in (before, own) if place is not None]
+    running = [place.started(LOOPS) for place in (before, now) if place is not None]
     runs = [said(process) for process in running]
     seconds = [{label(*loop): time for *loop, time in loops} for *loops, _ in runs]
     both = [loop for loop in seconds[-1] if all(loop in some for some in seconds)]
@@ -203,14 +203,15 @@ def commit(checkout: Path) -> str:
 
 
 def measured(folder: Path, baseline: str, before: Path | None) -> str:
-    own = Place(folder / "own")
-    other = Place(folder / "baseline", NUMBA_CPU_NAME=baseline, NUMBA_CPU_FEATURES="")
-    former = None if before is None else Place(folder / "before", before / "pin_metaik")
-    seconds, phases = compiled(own, former)
-    kinds = {kind: [label(*loop) for loop in used] for kind, used in own.lines(KINDS)}
+    target = {"NUMBA_CPU_NAME": baseline, "NUMBA_CPU_FEATURES": ""}
+    own, other = Place(folder / "own"), Place(folder / "baseline", **target)
+    former = None if before is None else Place(folder / "before", before / "pin_metaik", **target)
+    seconds, phases = compiled(other, former)
+    kinds = {kind: [label(*loop) for loop in used] for kind, used in other.lines(KINDS)}
     lines = [
-        f"`python benchmarks/compiling.py --before CHECKOUT --out docs/compiling.md`, {date.today()}, {processor()} with "
-        f"{os.cpu_count()} cores, Python {platform.python_version()}. Seconds of processor time, in one process.",
+        f"`python benchmarks/compiling.py --before CHECKOUT --out docs/compiling.md`, {date.today()}, {processor()} "
+        f"with {os.cpu_count()} cores, Python {platform.python_version()}. Seconds of processor time in one process, for code "
+        f"for {baseline}.",
         "",
         "| the first solve in a process with an empty cache | loops that it needs, and no kind above did | s |",
         "|---|---|---|",

@@ -39,11 +39,6 @@ class Version:
         import_module(self.module)
         LOOPS[self.module, self.name].compiled(self.without)
 
-    def ship(self, folder: Path) -> None:
-        """Have it written below a folder, for a wheel to carry."""
-        import_module(self.module)
-        LOOPS[self.module, self.name].ship(self.without, folder)
-
 
 def versions() -> tuple[list[Version], list[str]]:
     """All loops, and for each optional dependency that is missing a line with its extra."""

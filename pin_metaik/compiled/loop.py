@@ -8,7 +8,6 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from functools import cache, cached_property
-from pathlib import Path
 from threading import Timer
 from typing import Any, cast
 
@@ -95,11 +94,6 @@ class Loop:
             return self.compiled(without)
         finally:
             notice.cancel()
-
-    def ship(self, without: bool, folder: Path) -> None:
-        """Compile a version and write it, as code that a wheel carries, below a folder."""
-        (code,) = cast(Any, self.compiled(without)).overloads.values()
-        self.machine_code.ship(self.signatures[without], code, folder)
 
 
 @cache

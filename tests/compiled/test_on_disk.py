@@ -46,9 +46,11 @@ print(loops.total(np.ones(3)), loops.fourfold(1.0), sum(sum(loop.stats.cache_mis
 """
 RIGHT, OTHER = (6.0, 4.0), (9.0, 9.0)
 SHIP = """
-from pin_metaik.compiled import ahead, on_disk
-for name in ("total", "fourfold"):
-    ahead.Version("pin_metaik.toy.loops", name, False).ship(on_disk.SHIPPED)
+from pin_metaik.compiled import LOOPS
+from pin_metaik.toy import loops
+for loop in LOOPS.values():
+    loop.compiled()
+    loop.machine_code.ship()
 """
 KEPT = """
 import pickle
@@ -122,7 +124,7 @@ def test_machine_code_that_a_wheel_carries_is_used_until_a_source_changes(tmp_pa
     built = bare(tmp_path / "built")
     processor = baseline.baseline()
     assert processor is not None, "this machine is older than the baseline"
-    there = {"PYTHONPATH": str(built), "NUMBA_CACHE_DIR": str(tmp_path / "parts")}
+    there = {"PYTHONPATH": str(built), "NUMBA_CACHE_DIR": str(tmp_path / "code")}
     cpu = {"NUMBA_CPU_NAME": processor.name, "NUMBA_CPU_FEATURES": ""}
     subprocess.run([sys.executable, "-c", SHIP], env={**os.environ, **there, **cpu}, cwd=built, check=True)
     site = tmp_path / "site"
