@@ -210,8 +210,8 @@ def measured(folder: Path, baseline: str, before: Path | None) -> str:
     kinds = {kind: [label(*loop) for loop in used] for kind, used in other.lines(KINDS)}
     lines = [
         f"`python benchmarks/compiling.py --before CHECKOUT --out docs/compiling.md`, {date.today()}, {processor()} "
-        f"with {os.cpu_count()} cores, Python {platform.python_version()}. Seconds of processor time in one process, for code "
-        f"for {baseline}.",
+        f"with {os.cpu_count()} cores, Python {platform.python_version()}. Seconds of processor time "
+        f"in one process; the code is for {baseline}.",
         "",
         "| the first solve in a process with an empty cache | loops that it needs, and no kind above did | s |",
         "|---|---|---|",
