@@ -284,13 +284,24 @@ class Chain:
 
     def tangent(self, x: ArrayLike) -> NDArray[np.float64]:
         """(nv, n) Pinocchio's velocity per velocity of each coordinate at x (n,), by which a Jacobian is multiplied."""
-        x, model = array("x", x, self.n, error=InvalidConfiguration), self.model
-        T = np.zeros((model.nv, self.n))
-        for joint, column in self.coordinates.columns.items():
-            kind = model.joints[joint]
-            own = slice(column, column + kind.nv)
-            T[kind.idx_v : kind.idx_v + kind.nv, own] = velocities(kind, x[own])
+        x = array("x", x, self.n, error=InvalidConfiguration)
+        constant, varying = self._tangents
+        T = constant.copy()
+        for kind, rows, columns in varying:
+            T[rows, columns] = velocities(kind, x[columns])
         return T
+
+    @cached_property
+    def _tangents(self) -> tuple[NDArray[np.float64], list[tuple[pin.JointModel, slice, slice]]]:
+        """(nv, n) what ``tangent`` is whatever x, and joints of several coordinates, each with its rows and columns."""
+        constant, varying = np.zeros((self.model.nv, self.n)), []
+        for joint, column in self.coordinates.columns.items():
+            kind = self.model.joints[joint]
+            if kind.nv == 1:
+                constant[kind.idx_v, column] = 1.0
+            else:
+                varying.append((kind, slice(kind.idx_v, kind.idx_v + kind.nv), slice(column, column + kind.nv)))
+        return constant, varying
 
     def keeps_limits(self, q: NDArray[np.float64]) -> bool:
         """Whether q (nq,) is inside the limits; an angle read from a cosine or a quaternion, to within 1e-12 rad."""

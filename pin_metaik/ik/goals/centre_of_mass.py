@@ -42,6 +42,7 @@ class CentreOfMass(Bounded):
     least: float = -math.inf
     most: float = math.inf
     _edges: Array = field(init=False, repr=False)  # (e, 3) outward normals, and how far along them the edges are
+    _range: tuple[Array, Array] = field(init=False, repr=False)  # (e + 1,) bounds of y
 
     def __post_init__(self) -> None:
         """Check everything once, where it enters."""
@@ -54,6 +55,8 @@ class CentreOfMass(Bounded):
             edges = _edges_of(polygon, self.margin)
             object.__setattr__(self, "polygon", polygon.copy())
         object.__setattr__(self, "_edges", edges)
+        least = np.append(np.full(len(edges), -math.inf), self.least)
+        object.__setattr__(self, "_range", (least, np.append(edges[:, 2], self.most)))
 
     @checked
     def check(self, chain: Chain) -> None:
@@ -74,7 +77,7 @@ class CentreOfMass(Bounded):
         return np.concatenate([self._edges[:, :2] @ J[:2], J[2:]])
 
     def _bounds(self, at: Placed) -> tuple[Array, Array]:
-        return np.append(np.full(len(self._edges), -math.inf), self.least), np.append(self._edges[:, 2], self.most)
+        return self._range
 
 
 def _edges_of(polygon: Array, margin: float) -> Array:
