@@ -178,18 +178,17 @@ def label(module: str, name: str, without: bool) -> str:
     return f"{module.removeprefix('pin_metaik.')}.{name}{', without' if without else ''}"
 
 
-def compiled(now: Place, before: Place | None) -> tuple[dict[str, float], list[str]]:
-    """Seconds by loop, and rows of seconds by phase: before, if that is asked for, and now."""
-    running = [place.started(LOOPS) for place in (before, now) if place is not None]
-    runs = [said(process) for process in running]
-    seconds = [{label(*loop): time for *loop, time in loops} for *loops, _ in runs]
-    both = [loop for loop in seconds[-1] if all(loop in some for some in seconds)]
-    phases = [phases for *_, phases in runs]
-    rows = [(phase, [some.get(phase, 0.0) for some in phases]) for phase in dict.fromkeys(p for s in phases for p in s)]
-    rows = [(phase, times) for phase, times in rows if max(times) > 0.01 * sum(seconds[-1].values())]
+def phases(runs: list[list[Any]], loops: list[dict[str, float]]) -> list[str]:
+    """Rows of seconds by phase, a column for each run."""
+    spent = [phases for *_, phases in runs]
+    rows = [(phase, [some.get(phase, 0.0) for some in spent]) for phase in dict.fromkeys(p for s in spent for p in s)]
+    rows = [(phase, times) for phase, times in rows if max(times) > 0.01 * sum(loops[-1].values())]
     rows = sorted(rows, key=lambda row: -row[1][-1])
-    rows += [(f"**all {len(both)} loops that are in both**", [sum(some[loop] for loop in both) for some in seconds])]
-    return seconds[-1], [f"| {phase} | {' | '.join(f'{time:.1f}' for time in times)} |" for phase, times in rows]
+    both = [loop for loop in loops[-1] if all(loop in some for some in loops)]
+    rows += [
+        (f"**all {len(both)} loops that there are in each**", [sum(some[loop] for loop in both) for some in loops])
+    ]
+    return [f"| {phase} | {' | '.join(f'{time:.1f}' for time in times)} |" for phase, times in rows]
 
 
 def processor() -> str:
@@ -205,9 +204,18 @@ def commit(checkout: Path) -> str:
 def measured(folder: Path, baseline: str, before: Path | None) -> str:
     target = {"NUMBA_CPU_NAME": baseline, "NUMBA_CPU_FEATURES": ""}
     own, other = Place(folder / "own"), Place(folder / "baseline", **target)
-    former = None if before is None else Place(folder / "before", before / "pin_metaik", **target)
-    seconds, phases = compiled(other, former)
-    kinds = {kind: [label(*loop) for loop in used] for kind, used in other.lines(KINDS)}
+    places = [other] if before is None else [Place(folder / "before", before / "pin_metaik", **target), other]
+    running = [place.started(LOOPS) for place in places]  # at once, so that what slows one slows the other
+    runs = [said(process) for process in running]
+    names = ["s"] if before is None else [f"s in {commit(before)}", "s now"]
+    return page(names, runs, other.lines(KINDS), baseline, speeds(own, other))
+
+
+def page(names: list[str], runs: list[list[Any]], firsts: list[Any], baseline: str, speed: list[str]) -> str:
+    """The tables: of the last run, and of its phases beside those of the one before."""
+    by_loop = [{label(*loop): time for *loop, time in loops} for *loops, _ in runs]
+    seconds = by_loop[-1]
+    kinds = {kind: [label(*loop) for loop in used] for kind, used in firsts}
     lines = [
         f"`python benchmarks/compiling.py --before CHECKOUT --out docs/compiling.md`, {date.today()}, {processor()} "
         f"with {os.cpu_count()} cores, Python {platform.python_version()}. Seconds of processor time "
@@ -225,15 +233,13 @@ def measured(folder: Path, baseline: str, before: Path | None) -> str:
     lines += ["", "| loop | s |", "|---|---|"]
     lines += [f"| `{loop}` | {time:.1f} |" for loop, time in sorted(seconds.items(), key=lambda item: -item[1])]
     lines += [f"| **all {len(seconds)}** | **{sum(seconds.values()):.0f}** |", ""]
-    lines += ["| phase, of a hundredth or more | s |", "|---|---|"]
-    if before is not None:
-        lines[-2:] = [f"| phase, of a hundredth or more | s in {commit(before)} | s now |", "|---|---|---|"]
-    lines += [*phases, ""]
+    lines += [f"| phase, of a hundredth or more | {' | '.join(names)} |", f"|---{'|---' * len(names)}|"]
+    lines += [*phases(runs, by_loop), ""]
     lines += [
         f"| `solve_ik`, {2000 * ROUNDS} random poses | time with code for {baseline}, over that with this processor's "
         "own | answers equal to the last bit | largest difference of a joint, rad |",
         "|---|---|---|---|",
-        *speeds(own, other),
+        *speed,
     ]
     return "\n".join(lines) + "\n"
 

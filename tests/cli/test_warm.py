@@ -40,7 +40,7 @@ def test_what_is_missing_is_compiled_and_then_everything_left_alone(tmp_path: Pa
     assert len(FEW) < few < 10
     assert first.stdout.startswith(f"compiled {few} of {len(loops)} loops in ")
     assert second.stdout.startswith(f"all {len(loops)} loops are there\n")
-    assert "meshes of ur5" in second.stdout and second.stderr == ""
+    assert "meshes of ur5" in second.stdout and "compiling" not in second.stderr
     assert second.stdout.count("left out") == len(missing)
 
 
