@@ -118,10 +118,11 @@ for line in sys.stdin:
 class Place:
     """A copy of the package, without machine code, and a folder for what is compiled of it."""
 
-    def __init__(self, folder: Path, package: Path = PACKAGE, **environment: str) -> None:
+    def __init__(self, folder: Path, package: Path = PACKAGE, processor: str = "") -> None:
         shutil.copytree(package, folder / "pin_metaik", ignore=shutil.ignore_patterns("__pycache__", "machine_code"))
         self.folder = folder
-        self.environment = {**os.environ, "PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": str(folder), **environment}
+        target = {"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": ""} if processor else {}
+        self.environment = {**os.environ, "PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": str(folder), **target}
 
     def lines(self, program: str) -> list[Any]:
         """What a program prints, a JSON value a line."""
@@ -202,9 +203,8 @@ def commit(checkout: Path) -> str:
 
 
 def measured(folder: Path, baseline: str, before: Path | None) -> str:
-    target = {"NUMBA_CPU_NAME": baseline, "NUMBA_CPU_FEATURES": ""}
-    own, other = Place(folder / "own"), Place(folder / "baseline", **target)
-    places = [other] if before is None else [Place(folder / "before", before / "pin_metaik", **target), other]
+    own, other = Place(folder / "own"), Place(folder / "baseline", processor=baseline)
+    places = [other] if before is None else [Place(folder / "before", before / "pin_metaik", baseline), other]
     running = [place.started(LOOPS) for place in places]  # at once, so that what slows one slows the other
     runs = [said(process) for process in running]
     names = ["s"] if before is None else [f"s in {commit(before)}", "s now"]
