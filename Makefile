@@ -16,10 +16,13 @@ lint: $(VENV)/developed
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
+# Every loop is compiled first, on all cores: or each of the tests' processes would compile what another has begun.
 tests: $(VENV)/developed
+	$(BIN)/pin-metaik warm
 	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
 quick: $(VENV)/developed
+	$(BIN)/pin-metaik warm
 	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not slow"
 
 # Hours: what the tests ask a few times, asked until nothing is left to find. Pages in benchmarks/ say what came of it.

@@ -8,13 +8,13 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from functools import cache, cached_property
-from pathlib import Path
 from threading import Timer
 from typing import Any, cast
 
 import numba
 
 from pin_metaik.compiled.on_disk import MachineCode
+from pin_metaik.compiled.types_of_calls import found_out_once
 from pin_metaik.interrupts import Pressed
 
 # Other threads may run meanwhile; division by zero gives inf as in C.
@@ -79,7 +79,7 @@ class Loop:
             loop = numba.njit(fastmath=LOOSE, no_cfunc_wrapper=True, **OPTIONS)(self.function)
             loop._cache = self.machine_code
             signature = self.signatures[without]
-            with nullcontext() if loop._cache.has(signature) else loop._cache.turn():
+            with nullcontext() if loop._cache.has(signature) else loop._cache.turn(), found_out_once():
                 loop.compile(signature)
             loop.disable_compile()
             pressed.check()
@@ -94,11 +94,6 @@ class Loop:
             return self.compiled(without)
         finally:
             notice.cancel()
-
-    def ship(self, without: bool, folder: Path) -> None:
-        """Compile a version and write it, as code that a wheel carries, below a folder."""
-        (code,) = cast(Any, self.compiled(without)).overloads.values()
-        self.machine_code.ship(self.signatures[without], code, folder)
 
 
 @cache
