@@ -60,28 +60,31 @@ def test_a_stretched_elbow_is_one_solution_and_no_curve() -> None:
     assert set(every.dimensions) == {0}
 
 
-def test_a_wrist_above_the_base_can_turn_the_shoulder() -> None:
-    chain = chain_of("puma560")
-    x = chain.box.sample(np.random.default_rng(3), 1)[0]
-    x[3:] = 0.4, 0.7, -0.3
+def over_the_base(chain: mik.Chain) -> np.ndarray:
+    """Coordinates (6,) at which the shoulder's factor is 0."""
 
-    # The wrist comes nearest to the axis of the first joint where the shoulder's factor vanishes.
-    def factor(t: float) -> float:
-        at, values = x.copy(), np.empty((1, 4))
-        at[2] = t
-        chain.kernels.factors(chain.block, at[None], values)
+    def factor(x: np.ndarray) -> float:
+        values = np.empty((1, 4))
+        chain.kernels.factors(chain.block, x[None], values)
         return float(values[0, 0])
 
-    places = np.linspace(chain.limits.lower[2], chain.limits.upper[2], 200)
-    signs = np.sign([factor(t) for t in places])
-    low, high = next((places[i], places[i + 1]) for i in range(199) if signs[i] != signs[i + 1])
+    a, *others = chain.box.sample(np.random.default_rng(4), 50)
+    b = next(x for x in others if factor(x) * factor(a) < 0.0)
     for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if factor(middle) * factor(low) > 0.0 else (low, middle)
-    x[2] = low
+        middle = 0.5 * (a + b)
+        a, b = (middle, b) if factor(middle) * factor(a) > 0.0 else (a, middle)
+    return a
+
+
+@pytest.mark.parametrize(("name", "dimension"), [("rv7fl", 1), ("puma560", 0)])
+def test_a_wrist_over_the_base_lets_the_shoulder_turn_unless_the_arm_stands_beside_it(
+    name: str, dimension: int
+) -> None:
+    chain = chain_of(name)
+    x = over_the_base(chain)
     every = mik.solve_ik_all(chain, chain.poses(x)[0, 0], chain.q(x))
-    near = int(chain.limits.separation(every.x, x).max(axis=1).argmin())
-    assert every.dimensions[near] == 0 and len(every) <= 8  # two solutions have become one: the puma's arm is offset
+    nearest = int(chain.limits.separation(every.x, x).max(axis=1).argmin())
+    assert every.dimensions[nearest] == dimension and len(every) <= 8
 
 
 def test_a_redundant_chain_has_as_many_dimensions_as_spare_coordinates() -> None:
