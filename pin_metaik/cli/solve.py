@@ -22,7 +22,8 @@ from pin_metaik.cli.versions import print_json
 from pin_metaik.collision import CollisionWorld, load_scene, scene_names
 from pin_metaik.errors import InvalidBounds, InvalidSetting, InvalidTarget
 from pin_metaik.figures import picture_file
-from pin_metaik.ik import REFINERS, IKResult, IKSolver, Target, save_arm, solve_ik
+from pin_metaik.ik import REFINERS, IKResult, IKSolver, Target, Weighted, save_arm, solve_ik
+from pin_metaik.ik.criteria import CRITERIA, WEIGHTED
 from pin_metaik.ik.goals import Goal, Loop, Wish
 from pin_metaik.ik.solver import EVALUATIONS
 from pin_metaik.kinematics import Chain
@@ -110,6 +111,16 @@ def solve(
     ] = None,
     seeder: Annotated[str, typer.Option(help=f"Where starts come from: {SEEDERS}.")] = "auto",
     refiner: Annotated[str, typer.Option(help=f"What refines them: {', '.join(REFINERS)} or none.")] = "dls",
+    select: Annotated[
+        str, typer.Option(help=f"Which solution: first, which is the quickest to find, {', '.join(CRITERIA)}.")
+    ] = "first",
+    weight: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="JOINT=WEIGHT",
+            help=f"How much a joint counts for --select {', '.join(WEIGHTED)}; others count 1; may be repeated.",
+        ),
+    ] = None,
     evaluations: Annotated[int, typer.Option(help="Forward kinematics that may be spent.")] = EVALUATIONS,
     world: Annotated[
         str | None,
@@ -170,6 +181,7 @@ def solve(
         None if seeder == "none" else seeder,
         None if refiner == "none" else refiner,
         Budget(evaluations=evaluations),
+        select=Weighted(select, _weights(weight)) if weight else select,
     )
     obstacles = None if world is None else _world(loaded, world, margin or 0.0, srdf, allow or (), visual)
     target = _target(position, rpy, in_degrees)
@@ -217,6 +229,18 @@ def _limits(given: Iterable[str]) -> dict[str, tuple[float, float]]:
             raise InvalidBounds(f"--limit takes JOINT=LEAST,MOST with two numbers, got {one!r}") from None
         limits[name.strip()] = least, most
     return limits
+
+
+def _weights(given: Iterable[str]) -> dict[str, float]:
+    """Weights by the name of a joint, of ``JOINT=WEIGHT`` each."""
+    weights: dict[str, float] = {}
+    for one in given:
+        name, _, text = one.partition("=")
+        try:
+            weights[name.strip()] = float(text)
+        except ValueError:
+            raise InvalidSetting(f"--weight takes JOINT=WEIGHT with a number, got {one!r}") from None
+    return weights
 
 
 def _world(

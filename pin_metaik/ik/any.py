@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidTarget
-from pin_metaik.ik.criteria import Criterion, measure_of
+from pin_metaik.ik.criteria import Selection, measure_of
 from pin_metaik.ik.problem import Asked, IKProblem, check_targets
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.solve import solve_ik
@@ -162,7 +162,7 @@ def _decided(result: IKResult) -> bool:
     return result.success or result.status is IKStatus.UNREACHABLE or proved
 
 
-def _best(results: dict[int, IKResult], met: list[int], select: str | Criterion, q0: ArrayLike | None) -> int:
+def _best(results: dict[int, IKResult], met: list[int], select: Selection, q0: ArrayLike | None) -> int:
     """Of the targets that are met, the number of the one whose solution is best; of equals the first."""
     if select == "first":
         return met[0]

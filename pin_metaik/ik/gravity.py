@@ -30,6 +30,12 @@ def gravity_torque(chain: Chain, payload: float = 0.0, at: ArrayLike = (0.0, 0.0
     Raises:
         InvalidSetting: If nothing has a mass, or the payload is below 0, or ``at`` is not (3,).
     """
+    loads = gravity_loads(chain, payload, at)
+    return lambda q: float(np.linalg.norm(loads(q)))
+
+
+def gravity_loads(chain: Chain, payload: float = 0.0, at: ArrayLike = (0.0, 0.0, 0.0)) -> Callable[[Array], Array]:
+    """The torques (N m) and forces (N) themselves, (n,), of the chain's coordinates; as for ``gravity_torque``."""
     mass, place = number("payload", payload), array("at", at, 3, error=InvalidSetting)
     model, frame = chain.model, chain.frame_ids[0]
     if mass < 0.0:
@@ -38,13 +44,14 @@ def gravity_torque(chain: Chain, payload: float = 0.0, at: ArrayLike = (0.0, 0.0
         raise InvalidSetting(f"the bodies of {model.name!r} have no mass: give a payload, or a model with inertias")
     weight = -mass * np.asarray(model.gravity.linear)
 
-    def torque(q: Array) -> float:
+    def loads(q: Array) -> Array:
         data = chain.data
         held = np.array(pin.computeGeneralizedGravity(model, data, q))
         if mass > 0.0:
             J = pin.computeFrameJacobian(model, data, q, frame, pin.ReferenceFrame.LOCAL)
             turn = pin.updateFramePlacement(model, data, frame).rotation
             held += (turn @ (J[:3] - pin.skew(place) @ J[3:])).T @ weight
-        return float(np.linalg.norm(held @ chain.tangent(chain.x(q))))
+        held_by: Array = held @ chain.tangent(chain.x(q))
+        return held_by
 
-    return torque
+    return loads

@@ -30,6 +30,7 @@ from pin_metaik.optimize.settings import few
 
 Asked: TypeAlias = TargetLike | Goal | Wish | Sequence[TargetLike | Goal | Wish]
 NO_GOALS, NO_WISHES = Goals(), Wishes()
+EXACT = 1e-9  # m and rad
 
 
 class Verdict(NamedTuple):
@@ -141,6 +142,15 @@ class IKProblem:
         not.
         """
         return replace(self, records=np.array([target.whole_record for target in self.targets]))
+
+    @property
+    def exact(self) -> IKProblem:
+        """The same problem in the middle of the tolerances, to be met to 1e-9 m and rad."""
+        records = self.records.copy()
+        slacks, least = records[:, SLACK:WEIGHT], records[:, [NEAR, ALIGNED]]
+        records[:, SLACK:WEIGHT] = np.where(np.isfinite(slacks), 0.0, np.inf)
+        records[:, [NEAR, ALIGNED]] = np.where(np.isfinite(least), EXACT, np.inf)
+        return replace(self, records=records)
 
     @property
     def loose(self) -> bool:

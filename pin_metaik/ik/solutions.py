@@ -16,6 +16,7 @@ from pin_metaik.arguments import checked
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.collect import collect
+from pin_metaik.ik.criteria import Selection, measure_of
 from pin_metaik.ik.goals.pose import Target
 from pin_metaik.ik.labels import labels_of
 from pin_metaik.ik.plain_all import ENOUGH, FOR_ROOTS, ROOTS, all_of_plain
@@ -26,10 +27,10 @@ from pin_metaik.ik.self_motion.curve import SelfMotionCurve
 from pin_metaik.ik.self_motion.motions import (
     MOTION_BUDGET,
     RESOLUTION,
-    exactly,
     find_self_motions,
     has_curves,
 )
+from pin_metaik.ik.singular import dimension_at
 from pin_metaik.ik.solver import APART, DEFAULT_SOLVER, IKSolver
 from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Budget
@@ -92,7 +93,7 @@ class IKSolutions:
         ``self_motions`` takes a resolution and a budget, and says whether it is proved that none is missing. Empty
         where the solutions are isolated, and where they have more than one degree of freedom: then ``q`` samples them.
         """
-        problem = replace(exactly(self.problem), world=None)
+        problem = replace(self.problem.exact, world=None)
         if not has_curves(problem):
             return ()
         return find_self_motions(problem, problem.chain.reference, RESOLUTION, MOTION_BUDGET).curves
@@ -113,9 +114,39 @@ class IKSolutions:
         """
         return labels_of(self.problem, self.x)
 
+    @cached_property
+    def dimensions(self) -> tuple[int, ...]:
+        """How many degrees of freedom the solutions near each one have: 0 where it is separate, else it is one of many.
+
+        On a redundant chain it is the number of its spare coordinates. On any other it is above 0 in singularities
+        where joints move while the frame stands still, as far as a motion that is tried shows: then q has one solution
+        of each curve (1), the nearest to the start of all points 0.05 rad or m apart, and of all surfaces (2) one.
+        """
+        return tuple(dimension_at(self.problem.exact, x) for x in self.x)
+
+    @checked
+    def best(self, criterion: Selection, q0: ArrayLike | None = None) -> NDArray[np.float64]:
+        """The solution (nq,) where a criterion is least.
+
+        Args:
+            criterion: As for ``IKSolver.select``: a name, ``Weighted``, or a function of a configuration (nq,).
+            q0: (nq,) what ``"nearest"`` is near to; default: the chain's reference.
+
+        Raises:
+            UnknownName: No criterion of that name.
+            InvalidSetting: There is no solution, no world for ``"clearance"``, or the function gives no number.
+            InvalidConfiguration: If ``q0`` is not a configuration of the model.
+        """
+        measure, chain = measure_of(criterion), self.problem.chain
+        if not len(self.q):
+            raise InvalidSetting("there is no solution to choose from")
+        x0 = chain.x(chain.reference if q0 is None else chain.configuration(q0))
+        best: NDArray[np.float64] = self.q[np.argmin(measure(self.problem, self.x, x0))]
+        return best
+
     def as_dict(self) -> dict[str, Any]:
         """Plain values, for JSON: lengths in m, angles in rad."""
-        return fields_of(self, "q", "labels", "complete", "interrupted", "evaluations", "seconds")
+        return fields_of(self, "q", "labels", "dimensions", "complete", "interrupted", "evaluations", "seconds")
 
     def __len__(self) -> int:
         return len(self.q)

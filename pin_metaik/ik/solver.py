@@ -17,7 +17,7 @@ from pin_metaik.arguments import checked, instance
 from pin_metaik.errors import InvalidBudget, InvalidSetting
 from pin_metaik.ik.clearance import keep_clear
 from pin_metaik.ik.collect import collect
-from pin_metaik.ik.criteria import Criterion, Measure, measure_of, slide, turned, wished, world_of
+from pin_metaik.ik.criteria import Measure, Selection, measure_of, slide, turned, wished, world_of
 from pin_metaik.ik.exclude import FAR, FIRST, LONG, Exclusion
 from pin_metaik.ik.goals.pose import DEFAULT_TOLERANCE
 from pin_metaik.ik.plain_pose import solve_plain
@@ -25,7 +25,7 @@ from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine import DLS, Refinement, Refiner, make_refiner
 from pin_metaik.ik.refine.descent import Descent, descent_of
 from pin_metaik.ik.result import IKResult, IKStatus
-from pin_metaik.ik.self_motion.motions import RESOLUTION, exactly, find_self_motions, has_curves
+from pin_metaik.ik.self_motion.motions import RESOLUTION, find_self_motions, has_curves
 from pin_metaik.ik.starts import start_batches
 from pin_metaik.ik.state import ENDLESS, SearchState
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
@@ -67,9 +67,9 @@ class IKSolver:
         select: ``"first"`` solution found, or of all distinct ones that the budget allows to find, the ``"nearest"`` to
             ``q0``, the one of best ``"manipulability"``, the one that keeps farthest from the ``"limits"``, the one
             held with the least ``"torque"`` against gravity, the one with the most ``"clearance"`` in its world, or the
-            one for which a function of your own, of a configuration q (nq,), gives the lowest number. With one spare
-            joint and no world it is the best of all self-motions (see ``self_motions``), where these are proved to be
-            all.
+            one for which a function of your own, of a configuration q (nq,), gives the lowest number. Joints need not
+            count alike: ``Weighted("nearest", {"elbow_joint": 3.0})``. With one spare joint and no world it is the best
+            of all self-motions (see ``self_motions``), where these are proved to be all.
         trace: Whether to keep the seeder's convergence.
         patience: Evaluations after which the automatic search ends although nothing is proved, or a tenth of the
             budget, if that is more; the rest of the budget is for boxes (see ``Proof``). Of 13.7 million targets with a
@@ -80,7 +80,7 @@ class IKSolver:
     refiner: str | Refiner | None = "dls"
     budget: Budget = field(default=Budget(evaluations=EVALUATIONS))
     starts: int | None = None
-    select: str | Criterion = "first"
+    select: Selection = "first"
     trace: bool = False
     patience: int = 25_000
     _seeder: Metaheuristic | None = field(init=False, repr=False)
@@ -222,7 +222,7 @@ class IKSolver:
         budget = Budget(evaluations=max(1, state.left(CHOICE_SHARE)), seconds=self.budget.seconds)
         if self._has_curves(problem) and budget.evaluations is not None and budget.evaluations > CURVES:
             allowed = replace(budget, evaluations=budget.evaluations - STEP_OF_CURVE)
-            motions = find_self_motions(exactly(problem), base, RESOLUTION, allowed)
+            motions = find_self_motions(problem.exact, base, RESOLUTION, allowed)
             state.spent += motions.evaluations
             if motions.complete is not None and len(motions):
                 state.x, state.met = problem.chain.x(motions.best(self.select).q), True

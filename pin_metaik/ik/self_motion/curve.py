@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
@@ -15,7 +15,7 @@ from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting
-from pin_metaik.ik.criteria import Criterion, measure_of
+from pin_metaik.ik.criteria import Selection, Weighted, measure_of
 from pin_metaik.ik.problem import IKProblem, check_world
 from pin_metaik.optimize.settings import positive
 
@@ -129,32 +129,42 @@ class SelfMotionCurve:
         positive("step", step)
         return self.q(np.linspace(0.0, self.length, 1 + int(np.ceil(self.length / step))))
 
-    def nearest(self, q: ArrayLike) -> CurvePoint:
+    @checked
+    def nearest(self, q: ArrayLike, weights: Mapping[str, float] | None = None) -> CurvePoint:
         """The point with the least distance from a configuration (nq,), rad and m alike; angles the shorter way round.
 
         It is the nearest of the whole curve, to 1e-4, as a distance changes by no more than the joints move; but where
         limits cut off copies by whole turns, as ``best`` finds it.
+
+        Args:
+            q: The configuration.
+            weights: Of coordinates by name; see ``Weighted``.
+
+        Raises:
+            InvalidConfiguration: If ``q`` is not one.
+            UnknownName: A joint is none of the chain's.
+            InvalidSetting: A weight is below 0.
         """
         x = self.problem.chain.x(array("q", q, self.problem.chain.model.nq, error=InvalidConfiguration))
-        measure = measure_of("nearest")
-        return self._least(lambda X: measure(self.problem, self._turned(X), x), self._rate("nearest"))
+        near = Weighted("nearest", weights or {})
+        return self._least(lambda X: near.measure(self.problem, self._turned(X), x), self._rate(near))
 
     @checked
-    def best(self, criterion: str | Criterion) -> CurvePoint:
+    def best(self, criterion: Selection) -> CurvePoint:
         """The point where a criterion is least.
 
         Args:
-            criterion: As for ``IKSolver.select``: a name, or a function of a configuration (nq,). For ``"nearest"`` (to
-                ``q0``) and ``"limits"`` it is the best of the whole curve, to 1e-4, where no joint has finite limits
-                that leave room for a whole turn; others are looked at in every point ``x``, and between the neighbours
-                of each that is better than these.
+            criterion: As for ``IKSolver.select``: a name, ``Weighted``, or a function of a configuration (nq,). For
+                ``"nearest"`` (to ``q0``) and ``"limits"`` it is the best of the whole curve, to 1e-4, where no joint
+                has finite limits that leave room for a whole turn; others are looked at in every point ``x``, and
+                between the neighbours of each that is better than these.
 
         Raises:
             UnknownName: No criterion of that name.
             InvalidSetting: The function fails for a configuration, or does not return a number.
         """
         measure = measure_of(criterion)
-        if not isinstance(criterion, str):
+        if not isinstance(criterion, (str, Weighted)):
             try:
                 criterion(self.q(0.0))
             except TypeError as error:
@@ -199,13 +209,18 @@ class SelfMotionCurve:
         limits = self.problem.limits
         return np.where(limits.multi_turn, limits.nearest_turns(X, self._x0), limits.clip(X))
 
-    def _rate(self, criterion: str | Criterion) -> float | None:
+    def _rate(self, criterion: Selection) -> float | None:
         """How much a criterion changes at most for each unit of joint motion; None: nothing is known."""
         limits = self.problem.limits
-        spans = (limits.upper - limits.lower)[np.isfinite(limits.upper - limits.lower)]
-        if (limits.multi_turn & ~limits.periodic).any() or not isinstance(criterion, str) or not len(spans):
+        if isinstance(criterion, Weighted):
+            name, weights = criterion.criterion, criterion.of(self.problem.chain.names)
+        else:
+            name, weights = criterion if isinstance(criterion, str) else "", np.ones(len(limits.lower))
+        spans = limits.upper - limits.lower
+        if (limits.multi_turn & ~limits.periodic).any() or not np.isfinite(spans).any():
             return None
-        return {"nearest": 1.0, "limits": 2.0 / float(spans.min())}.get(criterion)
+        rates = {"nearest": weights, "limits": 2.0 * weights / spans}
+        return (float(rates[name].max()) or None) if name in rates else None
 
     @cached_property
     def _x0(self) -> Array:

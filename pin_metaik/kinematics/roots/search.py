@@ -1,7 +1,8 @@
 """All roots for one pose: by elimination, and what that misses by continuation.
 
 That elimination misses some is seen by counting: there are as many roots as at any other pose. Two of one loop that
-share a joint value, and those whose values lie in singularities of the loop, are missed by that loop alone.
+share a joint value, and those whose values lie in singularities of the loop, are missed by that loop alone. Points of
+curves, which some singular poses have beside separate roots, are none of them.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from pin_metaik.kinematics.roots.complex_arm import (
     ComplexScratch,
     added,
     complex_scratch,
+    is_regular,
     newton,
 )
 from pin_metaik.kinematics.roots.continuation import PathScratch, follow_each, path_scratch
@@ -41,7 +43,7 @@ class Roots(NamedTuple):
     Attributes:
         target: (12,) the pose.
         points: (m, 6) roots.
-        nearly: (l, 6) where Newton's method came to no end, and which are nearly real.
+        nearly: (l, 6) where Newton's method came to no end, or to a singularity, and which are nearly real.
         x: (6,) one at work ...
         values: (6,) ... and by joint.
     """
@@ -105,7 +107,7 @@ def by_loop(
             continue
         _, last, more = newton(arm, roots.target, x, STEPS, EXACT, work)
         spent += more
-        if last < ARRIVED:
+        if last < ARRIVED and is_regular(work):
             found = added_with_conjugate(arm, x, roots, found)
         elif nearly_real(x):
             near = added(arm, x, roots.nearly, near, APART)
@@ -173,7 +175,7 @@ def find_roots(
         degree: How many there can be; the search ends with so many.
         most: Evaluations that it may take.
         points: (m, 6) gets the roots.
-        nearly: (m, 6) gets what may be a double root, and is nearly real.
+        nearly: (m, 6) gets what may be a double root, or one of a curve, and is nearly real.
 
     Returns:
         How many roots there are, how many that may be double, and evaluations.
