@@ -64,7 +64,7 @@ class Page:
     def open(self, *folders: str) -> None:
         """Open folders of the panel that are closed."""
         for folder in folders:
-            self.page.get_by_text(folder, exact=True).last.click()
+            self.page.get_by_role("button", name=folder, exact=True).last.click()
 
     def click(self, button: str) -> None:
         """Click a button."""
@@ -90,7 +90,7 @@ class Page:
 
     def type(self, label: str, value: str) -> None:
         """Type into an input."""
-        box = self.page.get_by_label(label, exact=True).first
+        box = self.page.get_by_role("textbox", name=label, exact=True).first
         box.fill(value)
         box.press("Enter")
 

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.gui.forms import fine
 from pin_metaik.gui.tab import Tab
 from pin_metaik.kinematics import Chain
 
-STEPS = 1000.0  # of a slider
 FAR = 2.0  # m, of a slide without limits
 
 
@@ -41,7 +41,7 @@ class JointSliders:
                 f"{name}, {unit}",
                 min=low,
                 max=max(high, low + 1e-9),
-                step=max(high - low, 1e-9) / STEPS,
+                step=fine(low, high),
                 initial_value=float(np.clip(x[number], low, high)),
                 disabled=high <= low,
                 hint=f"Limits: {low:.4g} to {high:.4g} {unit}.",

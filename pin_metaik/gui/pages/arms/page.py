@@ -17,6 +17,7 @@ from pin_metaik.gui.kept import plain_of, state_of
 from pin_metaik.gui.latest import Latest
 from pin_metaik.gui.look.robot import RobotDrawing, pose_of, put
 from pin_metaik.gui.pages.arms import arm as arms
+from pin_metaik.gui.pages.arms.gaps import GapLines
 from pin_metaik.gui.pages.arms.joints import JointSliders
 from pin_metaik.gui.pages.arms.obstacles import ObstacleControls
 from pin_metaik.gui.pages.arms.solving import Answer, Question, all_answers, answered, code_of, target_of
@@ -67,6 +68,7 @@ class ArmsPage:
         with gui.add_folder("Code", expand_by_default=False):
             self._code = gui.add_markdown("")
         tab.client.scene.add_grid(f"{ROOT}/ground", width=6.0, height=6.0, cell_size=0.5, plane="xy")
+        self._gaps = GapLines(tab)
         self._gizmo: Any = None
         self._robot: RobotDrawing | None = None
         self._last_good: RobotDrawing | None = None
@@ -235,6 +237,7 @@ class ArmsPage:
             self._q = result.q
         self._robot.show(result.q)
         self._robot.redden(set(answer.colliding))
+        self._gaps.show(answer.nearest)
         self._last_good.visible = not result.success
         if not result.success:
             self._last_good.show(self._q)
