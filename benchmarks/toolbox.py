@@ -91,7 +91,7 @@ def cut_off() -> str:
     if done.returncode:
         return f"not run here: {(done.stderr.strip().splitlines() or ['no reason given'])[-1]}"
     seen = json.loads(done.stdout.splitlines()[-1])
-    found = f"{len(seen['opened'])} pages opened and answered, asked {', '.join(seen['asked'])}, {seen['faults']} faults"
+    found = f"{len(seen['opened'])} pages answered, asked {', '.join(seen['asked'])}, {seen['faults']} faults"
     return found + ("; there was a way out" if seen["reachable"] else "; no way out")
 
 

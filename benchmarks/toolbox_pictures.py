@@ -45,12 +45,12 @@ def metaheuristics(tab: Page) -> None:
 def paths(tab: Page) -> None:
     """Obstacles by number and seed, the shortest path, and a robot that drives along it."""
     tab.choose("Page", "Path planning")
-    tab.see("Quickest motion along the shortest path")
+    tab.see("Quickest motion")
     tab.click("Random map")
     tab.see("SHORTEST")
     tab.click("Plan a motion")
     tab.see("with a stop at every corner")
-    tab.scroll_to("Quickest motion along the shortest path")
+    tab.scroll_to("Quickest motion")
 
 
 def platforms(tab: Page) -> None:

@@ -48,7 +48,7 @@
     for (const [icon, name] of Object.entries(ICONS)) {
       for (const drawn of document.querySelectorAll(`button .tabler-icon-${icon}`)) named(drawn.closest("button"), name);
     }
-    for (const cross of document.querySelectorAll(".mantine-Notification-closeButton")) named(cross, "Close");
+    for (const cross of document.querySelectorAll(".mantine-Notification-closeButton")) named(cross, "Dismiss the notification");
     for (const canvas of document.querySelectorAll("canvas")) {
       canvas.setAttribute("role", "img");
       named(canvas, canvas.closest(".uplot") === null ? "Scene" : "Plot");

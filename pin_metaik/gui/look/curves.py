@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 COLOURS = ("#1f5fa8", "#c9432b", "#2a8a4a", "#8a4fb0", "#b8860b", "#107c8c", "#d0559a", "#6b6b6b")
 
+PADDING = (12, 16, 0, 0)  # pixels above, right, below and left: the outermost numbers have room
 Line = tuple[ArrayLike, ArrayLike]
 """x and y."""
 Curves = Mapping[str, Line | tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike]]
@@ -90,26 +91,32 @@ class CurvePlot:
         self._holder = gui.add_folder(None)
         self._plot: Any = None
         self._names: list[str] = []
-        self.show({y: ([1.0, 2.0], [1.0, 1.0])} if log_x else {y: ([], [])})
 
     def show(self, curves: Curves) -> None:
-        """Show these curves. Other names make another plot: uPlot does not find its scales again after that."""
-        if not curves:
-            return
+        """Show these curves; of none, nothing. Other names make another plot: uPlot finds its scales only once."""
         lines, numbers = lines_of(curves)
-        data = drawable(aligned(lines), self._log)
-        if list(lines) == self._names:
-            self._plot.data = data
+        if self._plot is not None and list(lines) == self._names:
+            self._plot.data = drawable(aligned(lines), self._log)
             return
         if self._plot is not None:
             self._plot.remove()
+            self._plot = None
         self._names = list(lines)
+        if not lines:
+            return
         axes = (self._axis(self._x, self._log_x), self._axis(self._y, self._log))
         scales = {"x": {"time": False, "distr": 3 if self._log_x else 1}, "y": {"distr": 3 if self._log else 1}}
         series, bands = series_of(self._names, numbers, self._x), bands_of(numbers)
         with self._holder:
             self._plot = self._gui.add_uplot(
-                data, series, bands=bands or None, scales=scales, axes=axes, height=self._height, title=self._y
+                drawable(aligned(lines), self._log),
+                series,
+                bands=bands or None,
+                scales=scales,
+                axes=axes,
+                height=self._height,
+                padding=PADDING,
+                title=self._y,
             )
 
     @staticmethod

@@ -36,13 +36,14 @@ class JointSliders:
             low, high = float(limits.lower[number]), float(limits.upper[number])
             low = low if math.isfinite(low) else -turn
             high = high if math.isfinite(high) else turn
+            step, decimals = fine(low, high)
             unit = "rad" if limits.rotates[number] else "m"
             handle = tab.client.gui.add_slider(
                 f"{name}, {unit}",
                 min=low,
                 max=max(high, low + 1e-9),
-                step=fine(low, high),
-                initial_value=float(np.clip(x[number], low, high)),
+                step=step,
+                initial_value=float(np.clip(round(x[number], decimals), low, high)),
                 disabled=high <= low,
                 hint=f"Limits: {low:.4g} to {high:.4g} {unit}.",
             )

@@ -51,13 +51,17 @@ class MapEditor:
         self._click = tab.client.scene.on_click()(self._clicked)
         scale = 0.12 * self.map.width
         flat: dict[str, Any] = {"active_axes": (True, True, False), "disable_rotations": True, "depth_test": False}
-        self._ends = {}
+        self._ends: dict[str, Any] = {}
+        self._places: dict[str, Any] = {}
         for role, colour in (("start", START), ("goal", GOAL)):
             x, y = getattr(world, role)
             gizmo = tab.client.scene.add_transform_controls(f"{ROOT}/{role}", scale=scale, position=(x, y, 0.0), **flat)
             tab.client.scene.add_icosphere(f"{ROOT}/{role}/ball", 0.012 * self.map.width, color=colour)
             gizmo.on_update(tab.doing(self._dragged))
             self._ends[role] = gizmo
+            typed = gui.add_vector2(f"{role.capitalize()}, m", (float(x), float(y)), step=0.01)
+            typed.on_update(tab.doing(self._typed))
+            self._places[role] = typed
 
     def take(self, world: Scene) -> None:
         """Show another map, and tell of it."""
@@ -66,6 +70,7 @@ class MapEditor:
         self.map.redraw(world)
         for role, gizmo in self._ends.items():
             gizmo.position = (*getattr(world, role), 0.0)
+            self._places[role].value = tuple(getattr(world, role))
         self._changed()
 
     def close(self) -> None:
@@ -126,7 +131,18 @@ class MapEditor:
         self._said.content = f"{count} corners; *Close* makes an obstacle of them." if count else ""
 
     def _dragged(self) -> None:
-        start, goal = (tuple(map(float, gizmo.position[:2])) for gizmo in self._ends.values())
+        for role, gizmo in self._ends.items():
+            self._places[role].value = tuple(round(float(value), 4) for value in gizmo.position[:2])
+        self._between(*(gizmo.position[:2] for gizmo in self._ends.values()))
+
+    def _typed(self) -> None:
+        for role, gizmo in self._ends.items():
+            gizmo.position = (*self._places[role].value, 0.0)
+        self._between(*(place.value for place in self._places.values()))
+
+    def _between(self, *ends: tuple[float, float]) -> None:
+        """Another start and goal."""
+        start, goal = (tuple(map(float, end)) for end in ends)
         self.world = self.world.between(start, goal)
         self.map.points("start", [start], START, 2.2)
         self.map.points("goal", [goal], GOAL, 2.2)

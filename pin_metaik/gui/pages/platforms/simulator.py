@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import ceil, floor
 from typing import Any
 
 import numpy as np
@@ -122,8 +123,10 @@ class Simulator:
             value = float(pose[number, 3] if number < 3 else turns[number - 3])
             low, high = (home[number] - reach, home[number] + reach) if number < 3 else (-TILT, TILT)
             low, high = min(low, value), max(high, value)
-            step = fine(low, high)
-            handle = gui.add_slider(name, min=float(low), max=float(high), step=step, initial_value=value)
+            step, decimals = fine(low, high)
+            low, high = (round(edge(end / step) * step, decimals) for edge, end in ((floor, low), (ceil, high)))
+            handle = gui.add_slider(name, min=low, max=high, step=step, initial_value=round(value, decimals))
+            handle.value = value  # all of its digits: only what is shown is rounded
             handle.on_update(self._tab.doing(self._show))
             self._sliders.append(handle)
         level_it = gui.add_button("Back to the middle")

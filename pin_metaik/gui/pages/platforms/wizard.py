@@ -109,12 +109,12 @@ class Wizard:
         legs = gui.add_number("Legs", 6, min=3, max=6, step=1)
         kind = gui.add_text("Type", geometry.type, hint=f"Joints a side, base first: {', '.join(NAMED)} ...")
         moved = gui.add_dropdown("Legs that", tuple(OF_LEGS), initial_value=self._moved)
-        radii = gui.add_vector2("Radii, mm", (geometry.base_radius / MM, geometry.platform_radius / MM), step=0.1)
+        radii = gui.add_vector2("Radii, mm", _mm(geometry.base_radius, geometry.platform_radius), step=0.1)
         low, high = limits.span if geometry.servos is None else (0.25, 0.35)
-        lengths = gui.add_vector2("Shortest and longest, mm", (low / MM, high / MM), step=0.1)
+        lengths = gui.add_vector2("Shortest and longest, mm", _mm(low, high), step=0.1)
         servos = geometry.servos
         horn, rod = (0.02, 0.12) if servos is None else (float(np.ravel(each)[0]) for each in (servos.horn, servos.rod))
-        parts = gui.add_vector2("Horn and rod, mm", (horn / MM, rod / MM), step=0.1)
+        parts = gui.add_vector2("Horn and rod, mm", _mm(horn, rod), step=0.1)
 
         def show() -> None:
             lengths.visible, parts.visible = moved.value == LINEAR, moved.value == SERVO
@@ -226,3 +226,8 @@ class Wizard:
     def _take_result(self) -> None:
         if self._found is not None:
             self._take(self._found.mechanism)
+
+
+def _mm(first: float, second: float) -> tuple[float, float]:
+    """Two lengths, m, as they are shown: to a nanometre."""
+    return round(first / MM, 6), round(second / MM, 6)
