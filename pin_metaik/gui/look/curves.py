@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 COLOURS = ("#1f5fa8", "#c9432b", "#2a8a4a", "#8a4fb0", "#b8860b", "#107c8c", "#d0559a", "#6b6b6b")
 
-PADDING = (12, 16, 0, 0)  # pixels above, right, below and left: the outermost numbers have room
+PADDING = (12, 32, 0, 0)  # pixels above, right, below and left: the outermost numbers have room
 Line = tuple[ArrayLike, ArrayLike]
 """x and y."""
 Curves = Mapping[str, Line | tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike]]

@@ -27,6 +27,7 @@ SIZES: dict[str, dict[str, Any]] = {
     "capsule": {"radius": 0.08, "length": 0.3},
 }
 NONE = "none"
+GIZMO = 0.15  # m
 WHERE = [0.5, 0.0, 0.3]  # m, a place in front of most arms
 
 
@@ -80,7 +81,7 @@ class ObstacleControls:
         self._show_place()
 
     def _drawn(self, scene: Any, number: int, obstacle: Obstacle) -> Any:
-        gizmo = scene.add_transform_controls(f"{NODE}/{number}", scale=0.25, line_width=2.0, depth_test=False)
+        gizmo = scene.add_transform_controls(f"{NODE}/{number}", scale=GIZMO, line_width=2.0, depth_test=False)
         put(gizmo, obstacle.pose)
         vertices, triangles = surface(obstacle.shape.geometry())
         scene.add_mesh_simple(
