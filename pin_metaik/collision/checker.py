@@ -95,14 +95,16 @@ class Checker:
                 found.append((Contact(self._name(i), self._name(j), depth), carriers))
         return found
 
-    def nearest(self, q: NDArray[np.float64]) -> Distance:
-        """The two bodies nearest to each other at q (nq,), of all that move against each other."""
+    def nearest(self, q: NDArray[np.float64], of: Container[str] | None = None) -> Distance:
+        """The two bodies nearest to each other at q (nq,), of all that move against each other or of these."""
         placed = self.solids.place(q)
         best = Distance(math.inf, "", "", np.full(3, np.nan), np.full(3, np.nan))
         done: set[tuple[int, int]] = set()
         for reach in (0.0, *REACH):
             near = placed.near(self._bare, min(reach, best.distance))
             new = [(i, j, own) for i, j, own in near if (i, j) not in done]
+            if of is not None:
+                new = [(i, j, own) for i, j, own in new if self._name(i) in of or self._name(j) in of]
             done.update((i, j) for i, j, _ in new)
             coarse = [(placed.gap(*self.levels_of(*pair)[:2]), pair) for pair in new]
             for gap, pair in sorted(coarse):

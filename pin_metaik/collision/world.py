@@ -300,13 +300,20 @@ class CollisionWorld:
         """
         return self.checker.contacts(as_configuration(self.model, q))
 
-    def min_distance(self, q: ArrayLike) -> Distance:
+    def min_distance(self, q: ArrayLike, *, of: str | None = None) -> Distance:
         """The two bodies nearest to each other at configuration q (nq,), and where; the margin does not count.
+
+        Args:
+            q: The configuration.
+            of: Name of a body, e.g. an obstacle: then the other is what is nearest to it. Default: any two.
 
         Raises:
             InvalidConfiguration: If q is not a configuration of the model.
+            UnknownName: Nothing has that name.
         """
-        return self.checker.nearest(as_configuration(self.model, q))
+        if of is not None and of not in self.names:
+            raise UnknownName("body", of, self.names)
+        return self.checker.nearest(as_configuration(self.model, q), None if of is None else (of,))
 
     def in_collision_batch(self, Q: ArrayLike, *, workers: int | None = None) -> NDArray[np.bool_]:
         """Whether anything collides, (k,), at configurations Q (k, nq).

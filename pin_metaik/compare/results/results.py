@@ -102,9 +102,9 @@ class Results:
         return [t for r in robots for c in cases for t in self._groups.get((r, c, method), ())]
 
     @checked
-    def spent(self, case: str, method: str) -> Array:
+    def spent(self, case: str, method: str, robot: str | None = None) -> Array:
         """Evaluations to solution of each row, ``inf`` of unsolved ones."""
-        rows = self.rows(case=case, method=method)
+        rows = self.rows(robot=robot, case=case, method=method)
         return np.array(
             [t.evaluations if t.solved and t.evaluations is not None else np.inf for t in rows], dtype=float
         )
@@ -128,11 +128,11 @@ class Results:
         return ends == {IKStatus.UNREACHABLE}
 
     @checked
-    def pairs(self, case: str) -> list[Pair]:
+    def pairs(self, case: str, robot: str | None = None) -> list[Pair]:
         """Every pair of methods that can be ranked, tested on a case."""
-        if case not in self._pairs:
-            self._pairs[case] = compare_all(self.rankable, self.costs(case))
-        return self._pairs[case]
+        if (case, robot) not in self._pairs:
+            self._pairs[case, robot] = compare_all(self.rankable, self.costs(case, robot))
+        return self._pairs[case, robot]
 
     def _table(self, case: str, robot: str | None) -> Array:
         table: dict[tuple[str, int], dict[str, list[float]]] = {}
@@ -151,7 +151,7 @@ class Results:
         return {}
 
     @cached_property
-    def _pairs(self) -> dict[str, list[Pair]]:
+    def _pairs(self) -> dict[tuple[str, str | None], list[Pair]]:
         return {}
 
     @cached_property

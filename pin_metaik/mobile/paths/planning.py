@@ -9,10 +9,11 @@ import math
 from time import perf_counter
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
-from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.errors import InvalidGeometry, InvalidSetting, UnknownName
 from pin_metaik.interrupts import Pressed, wrapped
 from pin_metaik.mobile.errors import NoPath
 from pin_metaik.mobile.paths.fitness import Fitness, make_fitness
@@ -29,7 +30,7 @@ from pin_metaik.optimize.settings import whole
 from pin_metaik.randomness import as_generator, repeatable
 from pin_metaik.watching import Watch, ended
 
-EXACT = "exact"
+EXACT, GIVEN = "exact", "given"
 
 # Table 2 of the paper, for the two it has; v_max is 1 in a workspace of 10.
 PAPER_SETTINGS: dict[str, Metaheuristic] = {
@@ -188,6 +189,26 @@ def plan_alternatives(problem: PathProblem | Scene, count: int) -> list[PathPlan
     took = perf_counter() - began
     rank = [_rank(paths[0], problem), *[PathStatus.FREE] * (len(paths) - 1)]
     return [_exact(path, problem, status, took, None) for path, status in zip(paths, rank, strict=True)]
+
+
+@checked
+def path_through(problem: PathProblem | Scene, via: ArrayLike) -> PathPlan:
+    """A path of your own: whether it is free by the exact test, and its gap to the shortest.
+
+    Args:
+        problem: A problem, or a scene for a point robot.
+        via: (n, 2) the points that it goes through on its way from start to goal.
+
+    Raises:
+        Blocked: The robot cannot be at the start or the goal.
+        InvalidGeometry: The points are not (n, 2) finite numbers.
+    """
+    if isinstance(problem, Scene):
+        problem = PathProblem.of(problem)
+    points = array("via", via, "n", 2, error=InvalidGeometry)
+    path = problem.through(points.ravel())
+    status = PathStatus.FREE if problem.space.holds(path.points) else PathStatus.COLLIDES
+    return PathPlan(path, status, _optimum(problem), path.length, GIVEN, 0, 0.0, None, False, problem)
 
 
 def _exact(path: Path, problem: PathProblem, status: PathStatus, seconds: float, seed: int | None) -> PathPlan:
