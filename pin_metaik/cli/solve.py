@@ -110,18 +110,18 @@ def solve(
         ),
     ] = None,
     seeder: Annotated[str, typer.Option(help=f"Where starts come from: {SEEDERS}.")] = "auto",
-    refiner: Annotated[str, typer.Option(help=f"What refines them: {', '.join(REFINERS)} or none.")] = "dls",
+    refiner: Annotated[str, typer.Option(help=f"Local method that refines them: {', '.join(REFINERS)}, none.")] = "dls",
     select: Annotated[
-        str, typer.Option(help=f"Which solution: first, which is the quickest to find, {', '.join(CRITERIA)}.")
+        str, typer.Option(help=f"Which solution to return: first (found soonest), {', '.join(CRITERIA)}.")
     ] = "first",
     weight: Annotated[
         list[str] | None,
         typer.Option(
             metavar="JOINT=WEIGHT",
-            help=f"How much a joint counts for --select {', '.join(WEIGHTED)}; others count 1; may be repeated.",
+            help=f"Weight of a joint for --select {', '.join(WEIGHTED)}; default 1; may be repeated.",
         ),
     ] = None,
-    evaluations: Annotated[int, typer.Option(help="Forward kinematics that may be spent.")] = EVALUATIONS,
+    evaluations: Annotated[int, typer.Option(help="Budget: largest number of forward kinematics.")] = EVALUATIONS,
     world: Annotated[
         str | None,
         typer.Option(

@@ -64,16 +64,18 @@ class IKSolver:
             results are not reproducible. ``target`` is the cost at which a pure metaheuristic stops; by default it
             stops once the tolerances are met.
         starts: How many starts to refine without a seeder; ``None``: until the budget is spent.
-        select: ``"first"`` solution found, or of all distinct ones that the budget allows to find, the ``"nearest"`` to
-            ``q0``, the one of best ``"manipulability"``, the one that keeps farthest from the ``"limits"``, the one
-            held with the least ``"torque"`` against gravity, the one with the most ``"clearance"`` in its world, or the
-            one for which a function of your own, of a configuration q (nq,), gives the lowest number. Joints need not
-            count alike: ``Weighted("nearest", {"elbow_joint": 3.0})``. With one spare joint and no world it is the best
-            of all self-motions (see ``self_motions``), where these are proved to be all.
-        trace: Whether to keep the seeder's convergence.
-        patience: Evaluations after which the automatic search ends although nothing is proved, or a tenth of the
-            budget, if that is more; the rest of the budget is for boxes (see ``Proof``). Of 13.7 million targets with a
-            solution none needed more than 25,000; 3,000 miss 1 of 2,500,000 random ones, and 2 of 10,000 singular ones.
+        select: The ``"first"`` solution found, or the best of all distinct solutions that the budget allows to find:
+            the ``"nearest"`` to ``q0``, the one of greatest ``"manipulability"``, the one farthest from the
+            ``"limits"``, the one that needs the least ``"torque"`` against gravity, the one with the most
+            ``"clearance"`` in its world, or the one for which your own function of a configuration q (nq,) gives the
+            lowest number. ``Weighted("nearest", {"elbow_joint": 3.0})`` weights joints differently. With one spare
+            joint and no world it is the best point of all self-motions, if ``self_motions`` proves that it has found
+            them all.
+        trace: Whether to keep the convergence of the seeder in ``IKResult.trace``.
+        patience: Evaluations after which the automatic search for a solution ends without a proof (or a tenth of the
+            budget, if that is more); the rest of the budget is for boxes (see ``Proof``). Of 13.7 million targets with
+            a solution none needed more than 25,000; 3,000 miss 1 of 2,500,000 random ones, and 2 of 10,000 singular
+            ones.
     """
 
     seeder: str | Metaheuristic | None = "auto"

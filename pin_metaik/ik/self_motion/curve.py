@@ -131,19 +131,19 @@ class SelfMotionCurve:
 
     @checked
     def nearest(self, q: ArrayLike, weights: Mapping[str, float] | None = None) -> CurvePoint:
-        """The point with the least distance from a configuration (nq,), rad and m alike; angles the shorter way round.
+        """The point nearest to a configuration (nq,), rad and m weighted alike; angles the shorter way round.
 
-        It is the nearest of the whole curve, to 1e-4, as a distance changes by no more than the joints move; but where
-        limits cut off copies by whole turns, as ``best`` finds it.
+        It is the nearest of the whole curve to within 1e-4, because a distance changes by no more than the joints move.
+        Where limits exclude copies by whole turns it is found as in ``best``, without that guarantee.
 
         Args:
             q: The configuration.
-            weights: Of coordinates by name; see ``Weighted``.
+            weights: Weights of coordinates by name, default 1; see ``Weighted``.
 
         Raises:
             InvalidConfiguration: If ``q`` is not one.
-            UnknownName: A joint is none of the chain's.
-            InvalidSetting: A weight is below 0.
+            UnknownName: If the chain has no joint of such a name.
+            InvalidSetting: If a weight is below 0.
         """
         x = self.problem.chain.x(array("q", q, self.problem.chain.model.nq, error=InvalidConfiguration))
         near = Weighted("nearest", weights or {})
@@ -155,9 +155,9 @@ class SelfMotionCurve:
 
         Args:
             criterion: As for ``IKSolver.select``: a name, ``Weighted``, or a function of a configuration (nq,). For
-                ``"nearest"`` (to ``q0``) and ``"limits"`` it is the best of the whole curve, to 1e-4, where no joint
-                has finite limits that leave room for a whole turn; others are looked at in every point ``x``, and
-                between the neighbours of each that is better than these.
+                ``"nearest"`` (to ``q0``) and ``"limits"`` the result is the best of the whole curve to within 1e-4, if
+                no joint has finite limits a whole turn or more apart. Any other criterion is evaluated at every point
+                of ``x``, and minimised around each point that is better than its two neighbours.
 
         Raises:
             UnknownName: No criterion of that name.
