@@ -5,7 +5,7 @@
 Writes the sections named, default all, into the page, and leaves the others as they are; each says by which command it
 was measured, when and on what machine. *fewer* is *six* with fewer poses, for all arms in a shorter time. The truth is
 the union of all solvers and of random descents, each judged by Pinocchio. Peers are installed by ``pip install
-'.[branches]'``; one that is not installed, or needs minutes to derive an arm's equations, is left out of that arm's row.
+'.[branches]'``; one that is not installed, or needs minutes to derive an arm's equations, is left out there.
 """
 
 from __future__ import annotations

@@ -193,8 +193,8 @@ class _Search:
     def run(self) -> None:
         """Cover the limits with boxes, and find the curves that go through those that are kept.
 
-        Where there is no end of boxes, curves are found from an atlas and at random; where there is, by some descents at
-        random beside, as those that stay near to others may be missing.
+        Where the boxes do not come to an end, curves are found from an atlas and at random; where they do, some random
+        descents are made as well, because curves that stay near to others may be missing.
         """
         target, chain = self._problem.targets[0], self._problem.chain
         free = not target.counts[3], not target.counts[4], not target.counts[5]
