@@ -11,7 +11,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from fuzz import elsewhere, fuzz
-from fuzz_readers import MJCF, OBJ, PLY, URDF, readers
+from fuzz_readers import readers
+from fuzz_seeds import MJCF, OBJ, PLY, URDF
 
 import pin_metaik as mik
 from pin_metaik import collision, learn, mobile

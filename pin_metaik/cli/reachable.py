@@ -103,7 +103,7 @@ def place(
 ) -> None:
     """Find where on the floor to put a robot so that it reaches poses. Exit code 0: all of them, 1: not all."""
     _, chain, around = _asked(robot, frame, world)
-    targets = _read(poses, in_degrees)
+    targets = read_targets(poses, in_degrees)
     with progress_bar("places") as watch:
         found = place_base(
             chain, targets, world=around, algorithm=algorithm, budget=Budget(evaluations=places), rng=rng, watch=watch
@@ -128,7 +128,7 @@ def _asked(robot: str, frame: str | None, scene: str | None) -> tuple[Robot, Cha
     return loaded, chain, None if scene is None else CollisionWorld(loaded, load_scene(scene))
 
 
-def _read(path: Path, in_degrees: bool) -> list[pin.SE3] | NDArray[np.float64]:
+def read_targets(path: Path, in_degrees: bool) -> list[pin.SE3] | NDArray[np.float64]:
     """Poses, or positions (k, 3), from a CSV file; a line of headings may come first."""
     try:
         with path.open(newline="", encoding="utf-8") as file:
