@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 from collections.abc import Callable, Collection, Mapping
 from decimal import Decimal
@@ -96,6 +97,19 @@ def _too_large(value: object) -> bool:
     if isinstance(value, Decimal):
         return value.is_finite() and abs(value) > LARGEST
     return isinstance(value, int) and abs(value) > LARGEST
+
+
+def read_csv(path: Path, error: Error) -> list[list[str]]:
+    """The rows of a CSV file.
+
+    Args:
+        path: The file.
+        error: What to raise if it is missing or malformed; made from one sentence.
+    """
+    try:
+        return list(csv.reader(read_text(path, error, "CSV").splitlines(keepends=True)))
+    except csv.Error as reason:
+        raise error(f"{path} is not CSV: {reason}") from None
 
 
 def read_array(path: Path, error: Error, kind: str) -> np.ndarray:

@@ -21,6 +21,7 @@ SIZES = {"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i
 TYPES = NAMES | SIZES | {"float32": "f4", "float64": "f8"}
 FORMS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 SUFFIX = ".ply"
+MAGIC = b"ply"
 CORNERS = ("vertex_indices", "vertex_index")
 END = b"end_header"
 
@@ -85,7 +86,7 @@ def _header(content: bytes) -> tuple[str, list[Element], int]:
     """The form, the elements, and where their rows begin."""
     end = content.find(END)
     start = content.find(b"\n", end) + 1
-    if not content.startswith(b"ply") or end < 0 or start == 0:
+    if not content.startswith(MAGIC) or end < 0 or start == 0:
         raise ValueError("its header is not whole")
     form, elements = "", list[Element]()
     for line in content[:end].decode("latin-1").splitlines():
