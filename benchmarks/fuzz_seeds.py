@@ -113,6 +113,7 @@ weight = 0.5
 [[wish]]
 kind = "manipulability"
 frame = "tool0"
+least = 0.1
 """
 TARGETS = b"x,y,z,roll,pitch,yaw\n0.1,0.2,0.3,0,1,2\n# none\n0.1,-0.2,3e-1,0,0,0\n"
 STATE = b"""{"format": "pin_metaik toolbox 1", "page": "arms", "pages": {"arms": {"robot": "ur5", "parameters": {}},

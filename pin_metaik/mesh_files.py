@@ -16,22 +16,27 @@ def is_ply(path: Path) -> bool:
 
 
 def check_mesh(path: Path, error: Error) -> None:
-    """Make sure that a file, which there may be, can be handed to coal's reader.
+    """Make sure that a file can be handed to coal's reader, if there is one.
 
     Args:
         path: The file.
         error: What to raise if it cannot; made from one sentence.
     """
+    head = _head(path)
+    if not head:
+        return
     if is_ply(path):
         ply.read_ply(path, error)
-    elif path.suffix.lower() == collada.SUFFIX or collada.MAGIC in _head(path):
+    elif path.suffix.lower() == collada.SUFFIX or collada.MAGIC in head:
         collada.check_collada(path, error)
 
 
 def _head(path: Path) -> bytes:
-    """The first bytes of a file; none of one that cannot be read, of which coal's reader tells."""
+    """The first bytes of a file; none of what is no file that can be read, of which coal's reader tells."""
     try:
-        with path.open("rb") as file:
-            return file.read(HEAD)
-    except OSError:
-        return b""
+        if path.is_file():  # reading pipes and devices may never end
+            with path.open("rb") as file:
+                return file.read(HEAD)
+    except (OSError, ValueError):  # too long, not allowed, with a null character
+        pass
+    return b""

@@ -1,13 +1,14 @@
 """Meshes in PLY (Turk, 1994), text or binary. coal's reader trusts the numbers of corners, and so ends the process.
 
-A header names elements and their properties; a row an element follows. A property is a number, or a list: its length
-and so many numbers.
+A header names elements and their properties; a row an element follows, in text a line. A property is a number, or a
+list: its length and so many numbers.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import islice, repeat
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,7 @@ END = b"end_header"
 
 Numbers = NDArray[np.float64]
 Take = Callable[[str, int], Numbers]
-"""The next so many numbers of a type."""
+"""The next so many numbers of a type, of the same row."""
 
 
 @dataclass(frozen=True)
@@ -47,10 +48,10 @@ class Element:
     count: int
     properties: tuple[Property, ...]
 
-    def rows(self, take: Take) -> list[dict[str, Numbers]]:
+    def rows(self, takes: Iterator[Take]) -> list[dict[str, Numbers]]:
         """The values of each of them, by property."""
         return [{p.name: take(p.kind, int(take(p.length, 1)[0]) if p.length else 1) for p in self.properties}
-                for _ in range(self.count)]  # fmt: skip
+                for take in islice(takes, self.count)]  # fmt: skip
 
 
 def read_ply(path: Path, error: Error) -> tuple[Numbers, NDArray[np.int64]]:
@@ -63,10 +64,13 @@ def read_ply(path: Path, error: Error) -> tuple[Numbers, NDArray[np.int64]]:
     try:
         content = path.read_bytes()
         form, elements, start = _header(content)
-        take = _binary(content[start:], FORMS[form]) if FORMS[form] else _text(content[start:])
+        takes = _binary(content[start:], FORMS[form]) if FORMS[form] else _text(content[start:])
         if sum(element.count for element in elements) > len(content):
             raise ValueError("it has not as many bytes as rows")
-        rows = {element.name: element.rows(take) for element in elements}
+        rows = {element.name: element.rows(takes) for element in elements}
+        next(takes, None)  # the last line, too, has no more numbers than it should
+        if any(len(rows[element.name]) < element.count for element in elements):
+            raise ValueError("it ends early")
         vertices = np.array([[row[axis][0] for axis in "xyz"] for row in rows["vertex"]]).reshape(-1, 3)
         faces = [next(row[name] for name in CORNERS if name in row) for row in rows["face"]]
     except OSError as reason:
@@ -75,6 +79,8 @@ def read_ply(path: Path, error: Error) -> tuple[Numbers, NDArray[np.int64]]:
         raise error(f"{path} is no mesh in PLY: it lacks x, y, z, corners, or a type is unknown") from None
     except (ValueError, OverflowError) as reason:  # the latter of a length that is infinite
         raise error(f"{path} is no mesh in PLY: {reason}") from None
+    if any(len(face) < 3 for face in faces):  # coal's reader looks at the third corner of each
+        raise error(f"{path} has faces of fewer than three corners")
     parts = [(face[0], b, c) for face in faces for b, c in zip(face[1:-1], face[2:], strict=True)]
     corners = np.array(parts, dtype=float).reshape(-1, 3)
     if not ((corners >= 0.0) & (corners < len(vertices)) & (corners == np.floor(corners))).all():
@@ -110,20 +116,23 @@ def _add(elements: list[Element], one: Property) -> None:
     elements[-1] = Element(last.name, last.count, (*last.properties, one))
 
 
-def _text(content: bytes) -> Take:
-    """What takes numbers from text."""
-    words, at = np.array(content.split(), dtype=float), 0
+def _text(content: bytes) -> Iterator[Take]:
+    """What takes numbers from each line of a text."""
+    for line in content.splitlines():
+        words, at = np.array(line.split(), dtype=float), 0
 
-    def take(_: str, count: int) -> Numbers:
-        nonlocal at
-        at += _fits(count, len(words) - at)
-        return np.asarray(words[at - count : at])
+        def take(_: str, count: int, words: Numbers = words) -> Numbers:
+            nonlocal at
+            at += _fits(count, len(words) - at)
+            return np.asarray(words[at - count : at])
 
-    return take
+        yield take
+        if at != len(words):
+            raise ValueError("a line has more numbers than its element")
 
 
-def _binary(content: bytes, order: str) -> Take:
-    """What takes numbers from bytes."""
+def _binary(content: bytes, order: str) -> Iterator[Take]:
+    """What takes numbers from bytes, which rows follow each other in."""
     at = 0
 
     def take(kind: str, count: int) -> Numbers:
@@ -132,11 +141,11 @@ def _binary(content: bytes, order: str) -> Take:
         at += size * _fits(count, (len(content) - at) // size)
         return np.frombuffer(content, order + kind, count, at - size * count).astype(float)
 
-    return take
+    return repeat(take)
 
 
 def _fits(count: int, room: int) -> int:
     """How many numbers to take, where so many are left."""
     if not 0 <= count <= room:
-        raise ValueError("it ends early")
+        raise ValueError("it ends early, or a line does")
     return count

@@ -78,6 +78,8 @@ class Mesh:
     def read(path: str | Path, scale: float = 1.0) -> Mesh:
         """The mesh in a file that coal's reader knows: .stl, .obj, .dae, .ply and others.
 
+        Of a .dae, its unit and its upward axis are left out, as Pinocchio leaves them out.
+
         Args:
             path: The file.
             scale: What its numbers are multiplied with to get metres: 0.001 for millimetres.

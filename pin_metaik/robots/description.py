@@ -234,5 +234,5 @@ def _check_meshes(names: Iterable[str], folders: list[str]) -> None:
     """
     folders = [*folders, *os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep)]
     for tail in {re.sub(r"^\w+://", "", name) for name in names}:
-        for path in filter(Path.is_file, (Path(folder, tail) for folder in folders)):
-            check_mesh(path, InvalidModel)
+        for folder in folders:
+            check_mesh(Path(folder, tail), InvalidModel)
