@@ -141,7 +141,9 @@ def read_targets(path: Path, in_degrees: bool) -> list[pin.SE3] | NDArray[np.flo
                     f"{path}: row {number + 1} has words that are no numbers: {','.join(line)}"
                 ) from None
     if not rows or {len(row) for row in rows} not in ({3}, {6}) or not np.isfinite(rows).all():
-        raise InvalidTarget(f"{path}: all rows are x,y,z, or all x,y,z,roll,pitch,yaw, finite, and there is one")
+        raise InvalidTarget(
+            f"{path}: each row is x,y,z or x,y,z,roll,pitch,yaw, finite, the same in all; and there is one"
+        )
     if len(rows[0]) == 3:
         return np.array(rows)
     turn = radians(1.0) if in_degrees else 1.0

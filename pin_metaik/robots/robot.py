@@ -149,7 +149,7 @@ def load_robot(
         name: Name in the catalogue or in example-robot-data (also as ``robot_names`` gives it), path of a URDF, of an
             MJCF or of a DH table's ``.toml``, the text of a URDF or an MJCF, or a module that has its path as
             ``URDF_PATH`` or ``MJCF_PATH``, as those of the package robot_descriptions. A URDF may be xacro, which the
-            extra ``xacro`` expands.
+            extra ``xacro`` expands: its expressions are run as Python, so take none from strangers.
         parameters: Values that replace those of a DH table's ``[parameters]``, in the table's units, or of the
             ``<xacro:arg>`` of a xacro file.
         free_flyer: Put the base on a free-flyer, six more coordinates, of which a chain wants limits for
