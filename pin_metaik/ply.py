@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.files import Error
+from pin_metaik.files import Error, read_bytes
 
 NAMES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"}
 NAMES |= {"float": "f4", "double": "f8"}
@@ -62,7 +62,7 @@ def read_ply(path: Path, error: Error) -> tuple[Numbers, NDArray[np.int64]]:
         error: What to raise if it is no such file, ends early, or has a corner that is none of its vertices.
     """
     try:
-        content = path.read_bytes()
+        content = read_bytes(path, error)
         form, elements, start = _header(content)
         takes = _binary(content[start:], FORMS[form]) if FORMS[form] else _text(content[start:])
         if sum(element.count for element in elements) > len(content):
@@ -73,8 +73,6 @@ def read_ply(path: Path, error: Error) -> tuple[Numbers, NDArray[np.int64]]:
             raise ValueError("it ends early")
         vertices = np.array([[row[axis][0] for axis in "xyz"] for row in rows["vertex"]]).reshape(-1, 3)
         faces = [next(row[name] for name in CORNERS if name in row) for row in rows["face"]]
-    except OSError as reason:
-        raise error(f"cannot read {path}: {reason.strerror}") from None
     except (KeyError, StopIteration):
         raise error(f"{path} is no mesh in PLY: it lacks x, y, z, corners, or a type is unknown") from None
     except (ValueError, OverflowError) as reason:  # the latter of a length that is infinite

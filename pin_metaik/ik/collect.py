@@ -156,7 +156,7 @@ class Collection:
         Each of them that is inside the limits has its solution in the end, or it is open whether there are more.
         """
         problem = self.problem
-        every = problem.chain._configurations(problem.targets[0].pose.homogeneous)
+        every = problem.chain._configurations(problem.targets[0].pose.homogeneous, self.state.left())
         if every is None:
             return False
         self.state.spent += every.evaluations

@@ -37,6 +37,7 @@ from pin_metaik.kinematics.proofs.arm import WHOLE, Free, ProofArm, proof_arm
 from pin_metaik.kinematics.proofs.boxes import TINY, Boxes
 from pin_metaik.kinematics.proofs.closed_forms import ClosedFormProof
 from pin_metaik.kinematics.reach import Reach, reach_of
+from pin_metaik.kinematics.roots.real import ENDLESS
 from pin_metaik.kinematics.roots.six_joints import Configurations, SixJoints, six_joints
 from pin_metaik.kinematics.sample_table import SEED, SampleTable, build_table, no_samples
 from pin_metaik.optimize import Box
@@ -352,11 +353,14 @@ class Chain:
         """What finds all configurations for a pose, real and complex; made on first use, in about 0.1 s."""
         return six_joints(self.paths)
 
-    def _configurations(self, pose: NDArray[np.float64]) -> Configurations | None:
-        """All configurations for a world pose (4, 4) of the frame; None, if this is no chain of six of one frame."""
+    def _configurations(self, pose: NDArray[np.float64], most: int = ENDLESS) -> Configurations | None:
+        """All configurations for a world pose (4, 4) of the frame; None, if this is no chain of six of one frame.
+
+        With ``most`` evaluations or fewer, which may be too few to find them all.
+        """
         if self._moves is not None:
-            return self._original._configurations(np.linalg.inv(self._moves[0]) @ pose)
-        return None if self._six_joints is None else self._six_joints.at(pose)
+            return self._original._configurations(np.linalg.inv(self._moves[0]) @ pose, most)
+        return None if self._six_joints is None else self._six_joints.at(pose, most)
 
     def _boxes(
         self,

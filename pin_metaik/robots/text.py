@@ -15,7 +15,7 @@ from pathlib import Path
 from xml.parsers import expat
 
 from pin_metaik.errors import InvalidModel
-from pin_metaik.files import DEEPEST
+from pin_metaik.files import DEEPEST, read_bytes
 
 _MARKS = {
     b"\xef\xbb\xbf": "utf-8-sig",
@@ -40,11 +40,7 @@ def read_text(path: Path) -> str:
     Raises:
         InvalidModel: If there is no such file, it cannot be read, or is not text.
     """
-    try:
-        text = decoded(path.read_bytes())
-    except OSError as error:
-        raise InvalidModel(f"cannot read {path}: {error.strerror}") from None
-    text, end, _ = text.partition("\0")  # where C's strings end
+    text, end, _ = decoded(read_bytes(path, InvalidModel)).partition("\0")  # where C's strings end
     if end and not outermost(text):
         raise InvalidModel(f"{path} is not a URDF: it is not text")
     if text.startswith(_POINTER):

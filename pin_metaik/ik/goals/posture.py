@@ -97,8 +97,9 @@ def joints_of(posture: Posture, chain: Chain) -> tuple[list[int], Array, Array]:
 
 def _as_span(name: str, value: float | tuple[float, float]) -> tuple[float, float]:
     """A number, or a range, as a range."""
-    one = not isinstance(value, (list, tuple, np.ndarray)) or np.ndim(value) == 0
-    least, most = array(f"joint {name!r}", [value, value] if one else value, 2, error=InvalidTarget, finite=False)
+    several = isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim > 0)
+    span = value if several else (value, value)
+    least, most = array(f"joint {name!r}", span, 2, error=InvalidTarget, finite=False)
     if not math.isfinite(least) and least == most:
         raise InvalidTarget(f"joint {name!r} at a finite value or in a range, got {value!r}")
     check_range(f"joint {name!r}", least, most)

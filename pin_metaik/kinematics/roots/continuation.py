@@ -25,11 +25,13 @@ from pin_metaik.kinematics.roots.complex_arm import (
     reciprocal,
     solve_twists,
 )
+from pin_metaik.kinematics.roots.real import ENDLESS
 
 STEADY = 1e-2  # rad or lengths: a step along a path that Newton's method corrects by more is taken shorter
 ON_PATH, EXACT = 1e-6, 1e-12  # last correction on the way, and at its end
 FIRST, SHORTEST = 0.05, 1e-7  # steps in s; one shorter ends a path in a singularity, or at infinity
 STEPS = 400
+A_STEP = 10  # evaluations that one takes at most
 
 
 class PathScratch(NamedTuple):
@@ -132,16 +134,18 @@ def rate(arm: ComplexArm, x: Complexes, twist: Complexes, out: Complexes, work: 
 
 @shared
 def follow(
-    arm: ComplexArm, start: Complexes, x: Complexes, path: PathScratch, work: ComplexScratch
+    arm: ComplexArm, start: Complexes, x: Complexes, most: int, path: PathScratch, work: ComplexScratch
 ) -> tuple[float, int]:
     """Follow x (6,) in place from the pose ``start`` (12,) along the path's twist, as far as it leads.
 
-    Returns s there, which is 1 at the end, and evaluations. Steps are those of Runge and Kutta, each put back onto the
-    path by Newton's method.
+    Returns s there, which is 1 at the end, and evaluations, ``most`` or fewer. Steps are those of Runge and Kutta, each
+    put back onto the path by Newton's method.
     """
     twist, target, trial, slopes = path.twist, path.target, path.trial, path.slopes
     s, h, spent = 0.0, FIRST, 0
     for _ in range(STEPS):
+        if spent + A_STEP > most:
+            break
         last_step = h >= 1.0 - s
         h = 1.0 - s if last_step else h
         regular = rate(arm, x, twist, slopes[0], work)
@@ -179,14 +183,15 @@ def follow_each(
     end: Complexes,
     points: Complexes,
     arrived: Ints,
+    most: int,
     path: PathScratch,
     work: ComplexScratch,
 ) -> int:
-    """``follow_all`` in room that was made for it."""
+    """``follow_all`` in room that was made for it, with ``most`` evaluations or fewer."""
     spent = 0
     screw_between(start, end, path.twist)
     for k in range(points.shape[0]):
-        s, more = follow(arm, start, points[k], path, work)
+        s, more = follow(arm, start, points[k], most - spent, path, work)
         arrived[k] = 1 if s == 1.0 else 0
         spent += more
     return spent
@@ -208,4 +213,4 @@ def follow_all(
     Returns the evaluations.
     """
     arm = ComplexArm(joints, wiring, tip, periodic)
-    return follow_each(arm, start, end, points, arrived, path_scratch(), complex_scratch())
+    return follow_each(arm, start, end, points, arrived, ENDLESS, path_scratch(), complex_scratch())

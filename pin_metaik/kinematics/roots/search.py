@@ -87,12 +87,13 @@ def by_loop(
     roots: Roots,
     found: int,
     near: int,
+    most: int,
     loop: EliminationScratch,
     work: ComplexScratch,
 ) -> tuple[int, int, int]:
     """Add the roots that one loop leads to: how many there are then, how many are nearly real, and evaluations.
 
-    Those of zeros beyond the unit circle are the conjugates of others.
+    These are ``most`` or fewer. Those of zeros beyond the unit circle are the conjugates of others.
     """
     spent = 0
     if not find_zeros(arm, target, number, loop):
@@ -103,6 +104,8 @@ def by_loop(
         inside = z.real * z.real + z.imag * z.imag < 1.0 + ON_CIRCLE and z != 0.0
         if not inside or not coordinates_of(arm, z, loop, roots.values, x):
             continue
+        if spent + STEPS > most:
+            break
         _, last, more = newton(arm, roots.target, x, STEPS, EXACT, work)
         spent += more
         if last < ARRIVED:
@@ -121,11 +124,12 @@ def by_paths(
     roots: Roots,
     found: int,
     near: int,
+    most: int,
     path: PathScratch,
     work: ComplexScratch,
 ) -> tuple[int, int, int]:
     """The same for the ends of paths from the pose ``start``, where ``ends`` (k, 6) are; they are moved."""
-    spent = follow_each(arm, start, roots.target, ends, arrived, path, work)
+    spent = follow_each(arm, start, roots.target, ends, arrived, most, path, work)
     x = roots.x
     for k in range(ends.shape[0]):
         for c in range(6):
@@ -138,7 +142,7 @@ def by_paths(
 
 
 @jit(
-    "UniTuple(i8, 3)(f8[:,::1], i8[:,::1], f8[::1], i8[::1], f8[::1], i8[::1], c16[:,::1], c16[:,:,::1], i8,"
+    "UniTuple(i8, 3)(f8[:,::1], i8[:,::1], f8[::1], i8[::1], f8[::1], i8[::1], c16[:,::1], c16[:,:,::1], i8, i8,"
     " c16[:,::1], c16[:,::1])"
 )
 def find_roots(
@@ -151,6 +155,7 @@ def find_roots(
     starts: Complexes,
     known: Complexes,
     degree: int,
+    most: int,
     points: Complexes,
     nearly: Complexes,
 ) -> tuple[int, int, int]:
@@ -166,6 +171,7 @@ def find_roots(
         starts: (w, 12) poses to follow paths from after that, until all are found.
         known: (w, k, 6) their roots, as far as known.
         degree: How many there can be; the search ends with so many.
+        most: Evaluations to spend at most.
         points: (m, 6) gets the roots.
         nearly: (m, 6) gets what may be a double root, and is nearly real.
 
@@ -177,13 +183,13 @@ def find_roots(
     ends, arrived = np.empty(known.shape[1:], np.complex128), np.empty(known.shape[1], np.int64)
     found = near = spent = 0
     for number in loops:
-        found, near, more = by_loop(arm, target, number, roots, found, near, loop, work)
+        found, near, more = by_loop(arm, target, number, roots, found, near, most - spent, loop, work)
         spent += more
         if found >= degree:
             return found, near, spent
     for w in range(starts.shape[0]):
         ends[:] = known[w]
-        found, near, more = by_paths(arm, starts[w], ends, arrived, roots, found, near, path, work)
+        found, near, more = by_paths(arm, starts[w], ends, arrived, roots, found, near, most - spent, path, work)
         spent += more
         if found >= degree:
             break
