@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import json
 import zipfile
@@ -10,12 +11,14 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 import pytest
+from apart import address_space, room
 from fuzz import elsewhere, fuzz
 from fuzz_readers import readers
 from fuzz_seeds import DAE, MESHES, MESHES_MJCF, MJCF, OBJ, PLY, URDF
 
 import pin_metaik as mik
 from pin_metaik import collision, learn, mobile
+from pin_metaik.cli.goals import read_goals
 from pin_metaik.cli.reachable import read_targets
 from pin_metaik.collision.scene import read_points
 from pin_metaik.compare import read_results
@@ -31,6 +34,8 @@ from pin_metaik.errors import (
     MetaIKError,
 )
 from pin_metaik.gui.look.pieces import pieces_of
+from pin_metaik.mobile.motion.trajectory import load_trajectory
+from pin_metaik.mobile.world.images import read_image
 from pin_metaik.stewart import read_trajectory
 from tests.compare.suites import SMALL
 
@@ -214,6 +219,54 @@ def test_tables_that_are_no_text_or_no_finite_numbers_are_refused(content: bytes
     for read in (lambda path: read_targets(path, False), read_trajectory):
         with pytest.raises(InvalidTarget, match=r"t\.csv"):
             read(tmp_path / "t.csv")
+
+
+def test_files_without_an_end_are_not_read_for_ever(tmp_path: Path) -> None:
+    (tmp_path / "endless.urdf").symlink_to("/dev/zero")
+    with pytest.raises(InvalidModel, match="it has more than 256 MiB"):
+        mik.load_robot(tmp_path / "endless.urdf")
+
+
+def test_an_image_has_no_more_bytes_than_there_are(tmp_path: Path) -> None:
+    from PIL import Image
+
+    Image.new("L", (4, 3)).save(tmp_path / "map.png")
+    whole = (tmp_path / "map.png").read_bytes()
+    at = whole.index(b"IDAT") - 4
+    (tmp_path / "map.png").write_bytes(whole[:at] + b"\xff\xff\xff\xff" + whole[at + 4 :])
+    with contextlib.suppress(InvalidGeometry), room(address_space() + (1 << 30)):
+        read_image(tmp_path / "map.png")  # no MemoryError
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("goal = 3", "is a table with a kind"),
+        ('[[goal]]\nkind = "posture"\njoints = {a = {b = 1}}', "joint 'a': expected numbers of shape"),
+        ('[[goal]]\nkind = "posture"\njoints = {a = [[1, 2], [3]]}', "joint 'a': expected numbers of shape"),
+        ('[[goal]]\nkind = "posture"\njoints = {a = "up"}', "joint 'a': expected numbers of shape"),
+    ],
+)
+def test_goals_of_the_wrong_kind_are_refused(text: str, says: str, tmp_path: Path) -> None:
+    (tmp_path / "g.toml").write_text(text)
+    with pytest.raises(InvalidTarget, match=says):
+        read_goals([], [], tmp_path / "g.toml")
+
+
+def test_a_phase_lasts_no_less_than_nothing(tmp_path: Path) -> None:
+    (tmp_path / "t.json").write_text('{"start": [0, 0, 0], "v": 1, "phases": [[-1e308, 0, 0, 0]]}')
+    with pytest.raises(InvalidSetting, match="a phase lasts 0 s or longer"):
+        load_trajectory(tmp_path / "t.json")
+
+
+def test_a_damaged_map_in_parquet_is_refused(tmp_path: Path) -> None:
+    robot = mik.load_robot("asr_twodof")
+    mik.reachability(mik.Chain(robot, robot.frame), np.array([[0.1, 0.1, 0.1]])).save(tmp_path / "m.parquet")
+    whole = (tmp_path / "m.parquet").read_bytes()
+    for content in (whole[:-30], whole.replace(b"reachability", b"reachabilitx"), b"PAR1" + b"[" * 400):
+        (tmp_path / "m.parquet").write_bytes(content)
+        with pytest.raises(InvalidSetting, match=r"m\.parquet is not a map"):
+            mik.Reachability.load(tmp_path / "m.parquet")
 
 
 def test_a_grid_beyond_all_numbers_is_refused(tmp_path: Path) -> None:
