@@ -33,10 +33,11 @@ soak: $(VENV)/developed
 urdf: $(VENV)/installed
 	$(BIN)/pin-metaik urdf --all
 
-# The site, in build/docs: every example is run, warnings are errors, internal links and pictures are checked.
+# The site, in build/docs: every example is run, warnings are errors, internal links are checked, pictures drawn again.
 docs: $(VENV)/documented
 	$(BIN)/python -m sphinx -c docs -b html --fail-on-warning --keep-going --quiet . build/docs
 	$(BIN)/python docs/links.py build/docs
+	$(BIN)/python docs/pictures.py --check
 	@echo "open build/docs/index.html"
 
 # The sdist, and a wheel for this platform and this Python with machine code in it.

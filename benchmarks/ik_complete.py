@@ -4,7 +4,7 @@
 
 Writes the sections named, default both, into the page, and leaves the other as it is; each says by which command it
 was measured, when and on what machine. The truth is the union of all solvers and of random descents, each judged by
-Pinocchio. Peers are installed by ``pip install pin-metaik[branches]``; one that is not installed, or needs minutes to
+Pinocchio. Peers are installed by ``pip install '.[branches]'``; one that is not installed, or needs minutes to
 derive an arm's equations, is left out of that arm's row.
 """
 

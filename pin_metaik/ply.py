@@ -74,7 +74,7 @@ def read_ply(path: Path, error: Error) -> tuple[Numbers, NDArray[np.int64]]:
         vertices = np.array([[row[axis][0] for axis in "xyz"] for row in rows["vertex"]]).reshape(-1, 3)
         faces = [next(row[name] for name in CORNERS if name in row) for row in rows["face"]]
     except (KeyError, StopIteration):
-        raise error(f"{path} is no mesh in PLY: it lacks x, y, z, corners, or a type is unknown") from None
+        raise error(f"{path} is not a PLY mesh: it lacks x, y, z or triangles, or has an unknown type") from None
     except (ValueError, OverflowError) as reason:  # the latter of a length that is infinite
         raise error(f"{path} is no mesh in PLY: {reason}") from None
     if any(len(face) < 3 for face in faces):  # coal's reader looks at the third corner of each
@@ -82,7 +82,7 @@ def read_ply(path: Path, error: Error) -> tuple[Numbers, NDArray[np.int64]]:
     parts = [(face[0], b, c) for face in faces for b, c in zip(face[1:-1], face[2:], strict=True)]
     corners = np.array(parts, dtype=float).reshape(-1, 3)
     if not ((corners >= 0.0) & (corners < len(vertices)) & (corners == np.floor(corners))).all():
-        raise error(f"{path} has triangles whose corners are none of its {len(vertices)} vertices")
+        raise error(f"{path} has triangles with indices outside its {len(vertices)} vertices")
     return vertices, corners.astype(np.int64)
 
 
@@ -104,7 +104,7 @@ def _header(content: bytes) -> tuple[str, list[Element], int]:
             case ["property", kind, name] if elements:
                 _add(elements, Property(name, TYPES[kind]))
     if any(element.count < 0 or (element.count and not element.properties) for element in elements):
-        raise ValueError("an element has no properties, or a number below zero of rows")
+        raise ValueError("an element has no properties, or a negative number of rows")
     return form, elements, start
 
 

@@ -77,7 +77,7 @@ class Table:
         """The unit that a text names."""
         name = self.text(key)
         if name not in known:
-            raise InvalidTable(f"{self.at(key)} is none of the units {', '.join(known)}")
+            raise InvalidTable(f"{self.at(key)} is not one of the units {', '.join(known)}")
         return known[name]
 
     def whole(self, key: str) -> int:

@@ -1,4 +1,4 @@
-"""Goals as the command line has them: a kind of goal, and its fields as ``NAME=VALUE``, in words or in a file."""
+"""Goals on the command line: a kind of goal and its fields as ``NAME=VALUE``, or a file of goals."""
 
 from __future__ import annotations
 

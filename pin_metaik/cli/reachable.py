@@ -43,25 +43,29 @@ def reachability(
     frame: FrameName = None,
     spacing: Annotated[float, typer.Option(help="Distance between neighbouring positions, m.")] = 0.1,
     orientations: Annotated[
-        int, typer.Option(min=0, help="Orientations at each position, spread evenly; 0: any one will do.")
+        int, typer.Option(min=0, help="Number of orientations at each position, spread evenly; 0: at any orientation.")
     ] = 20,
     box: Annotated[
         tuple[float, float, float, float, float, float] | None,
         typer.Option(metavar="X Y Z X Y Z", help="Least and greatest corner, m; default: as far as the robot reaches."),
     ] = None,
     world: WorldName = None,
-    jobs: Annotated[int | None, typer.Option(help="Processes; -1: one a core; default: threads.")] = None,
-    folder: Annotated[Path | None, typer.Option(help="Keep parts of the map here, and go on from there.")] = None,
+    jobs: Annotated[
+        int | None, typer.Option(help="Number of processes; -1: one for each core; default: threads.")
+    ] = None,
+    folder: Annotated[
+        Path | None, typer.Option(help="Folder to store parts of the map in; the same command resumes from it.")
+    ] = None,
     output: Annotated[
         list[Path] | None,
         typer.Option("--output", "-o", help="Write the map (.npz, .parquet) or a picture; may be repeated."),
     ] = None,
     show: Annotated[bool, typer.Option("--show", help="Show it in the browser until Ctrl-C.")] = False,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Of the page; 0: any that is free.")] = 8080,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of the page; 0: any free port.")] = 8080,
     rng: Seed = 0,
     as_json: Json = False,
 ) -> None:
-    """Map which positions a robot reaches, in which share of orientations, and how well it can move there."""
+    """Map the positions a robot reaches, the share of orientations at each, and its manipulability."""
     outputs = output or []
     for path in outputs:
         if path.suffix.lower() in FORMATS:
@@ -95,10 +99,10 @@ def place(
     poses: Annotated[Path, typer.Argument(help="CSV of poses in the world: x,y,z in m, or x,y,z,roll,pitch,yaw.")],
     frame: FrameName = None,
     world: WorldName = None,
-    algorithm: Annotated[str, typer.Option(help=f"What searches: {', '.join(ALGORITHMS)}.")] = "mtde",
-    places: Annotated[int, typer.Option(min=1, help="Places to try.")] = 1000,
+    algorithm: Annotated[str, typer.Option(help=f"The metaheuristic: {', '.join(ALGORITHMS)}.")] = "mtde",
+    places: Annotated[int, typer.Option(min=1, help="Number of placements to try.")] = 1000,
     rng: Seed = 0,
-    in_degrees: Annotated[bool, typer.Option("--degrees", help="Angles in degrees, given and shown.")] = False,
+    in_degrees: Annotated[bool, typer.Option("--degrees", help="Read and print angles in degrees.")] = False,
     as_json: Json = False,
 ) -> None:
     """Find where on the floor to put a robot so that it reaches poses. Exit code 0: all of them, 1: not all."""

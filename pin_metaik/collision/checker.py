@@ -1,7 +1,7 @@
 """Checks in three steps: boxes, then coarse solids, then the original geometry, which decides.
 
 No contact between the boxes, or between the coarse solids, implies no contact between the bodies that they enclose. So
-the answers are those of the original geometry, and nearly always cost no more than the coarse one.
+the results are those of the original geometry, nearly always at the cost of the coarse one.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Looking at a world in the browser, through Pinocchio's viser visualizer: an extra."""
+"""A world in the browser, by Pinocchio's viser visualizer (the extra ``viewer``)."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ PAUSE, SAME = 0.5, 3  # s between two looks at a page, and how many must be the 
 
 
 class WorldViewer(ViserVisualizer):  # type: ignore[misc]  # Pinocchio has no types
-    """A ``pinocchio.visualize.ViserVisualizer`` of a world: what collides is red, frames and targets have axes.
+    """A ``pinocchio.visualize.ViserVisualizer`` of a world: colliding bodies are red, frames and targets have axes.
 
     Attributes:
         viewer: The ``viser.ViserServer``.
@@ -151,13 +151,13 @@ class WorldViewer(ViserVisualizer):  # type: ignore[misc]  # Pinocchio has no ty
 
 
 def open_viewer(world: CollisionWorld, port: int = 8080, frame: str | None = None) -> WorldViewer:
-    """Show a world, as it is now, at http://localhost:port, to this machine only; what collides is red.
+    """Show a world, as it is now, at http://localhost:port, to this machine only; colliding bodies are red.
 
     A robot without a ``visual_model`` is shown by its collision geometry.
 
     Args:
         world: The world.
-        port: Where; 0 for any port that is free.
+        port: The port; 0 for any free port.
         frame: A frame of the robot whose axes are drawn, such as its tip.
 
     Returns:

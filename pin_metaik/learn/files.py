@@ -29,7 +29,7 @@ def save_regressor(regressor: Regressor, file: str | Path) -> None:
 
     Args:
         regressor: The network.
-        file: Where to: ``.npz``.
+        file: The file, ``.npz``.
 
     Raises:
         InvalidSetting: Another suffix.
@@ -40,10 +40,10 @@ def save_regressor(regressor: Regressor, file: str | Path) -> None:
 
 @checked
 def load_regressor(file: str | Path) -> Regressor:
-    """A network that ``save_regressor`` wrote; it gives the same numbers to the last bit.
+    """Read a network that ``save_regressor`` wrote; its outputs are the same to the last bit.
 
     Raises:
-        InvalidSetting: The file is missing, or is none of these.
+        InvalidSetting: The file is missing, or does not hold a network.
     """
     return regressor_of(read_arrays(Path(file), InvalidSetting, NETWORK), str(file))
 

@@ -1,4 +1,4 @@
-"""Maps in files: NumPy's ``.npz``, or a Parquet table with a row for each pose, for whatever reads tables."""
+"""Files of maps: NumPy's ``.npz``, or a Parquet table with a row for each pose."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parts of a map in a folder, so that work goes on where it stopped."""
+"""Parts of a map in a folder, from which interrupted work resumes."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Kept:
         self._folder = folder
         path, question = folder / QUESTION, {"digest": digest}
         if path.exists() and read_json(path, InvalidSetting) != question:
-            raise InvalidSetting(f"{folder} holds the map of another question: choose another folder")
+            raise InvalidSetting(f"{folder} holds a map that was made with other arguments: choose another folder")
         replace_text(path, json.dumps(question) + "\n")
 
     def _path(self, number: int) -> Path:

@@ -40,13 +40,13 @@ KINDS: dict[Shapes, pin.GeometryType] = {
 @checked_as(InvalidModel)
 @dataclass(frozen=True)
 class Description:
-    """The source of a model as plain values, from which another process makes the same model.
+    """The source of a model as plain values, from which another process can build the same model.
 
     Attributes:
         text: The URDF, or the MJCF.
-        source: The file it comes from, from which meshes are looked for; None for text that comes from no file.
-        base: What joins the base to the world.
-        mimic: Couple joints with a mimic tag to the joint they follow.
+        source: The file it was read from, relative to which meshes are looked for; None if it was given as text.
+        base: The joint between the world and the base.
+        mimic: Whether joints with a mimic tag follow their joint instead of being free.
     """
 
     text: str = field(repr=False)
@@ -60,12 +60,12 @@ class Description:
 
     @property
     def what(self) -> str:
-        """The file, as messages call it."""
+        """Its name in messages."""
         return str(self.source or f"the {'MJCF' if self.is_mjcf else 'URDF'} text")
 
     @property
     def is_mjcf(self) -> bool:
-        """Whether it is in MuJoCo's language."""
+        """Whether it is MJCF, MuJoCo's format."""
         return outermost(self.text) == "mujoco"
 
     def model(self) -> pin.Model:
@@ -77,7 +77,7 @@ class Description:
         return self.read()[0]
 
     def read(self) -> tuple[pin.Model, list[str]]:
-        """The model, and what has to be said of it: what was guessed, mended, or could not be held.
+        """The model, and remarks on what was assumed, repaired or ignored.
 
         Raises:
             InvalidModel: If the text is not a robot; the message has the parser's own reason.
@@ -88,14 +88,14 @@ class Description:
 
     @checked
     def geometry(self, model: pin.Model, shapes: Shapes) -> tuple[pin.GeometryModel, list[str]]:
-        """Geometry of the model, meshes included, and what has to be said of it.
+        """Geometry of the model, meshes included, and remarks on what was assumed, repaired or ignored.
 
         ``package://`` and relative paths are looked up in the folders above ``source``, the nearest first, then in
         ROS_PACKAGE_PATH.
 
         Raises:
             InvalidModel: If a mesh is missing or unreadable, or a shape cannot be read; the message names it.
-            InvalidSetting: If ``shapes`` are neither.
+            InvalidSetting: If ``shapes`` is not one of the two kinds of geometry.
         """
         one_of("shapes", shapes, Shapes)
         geometry = self._mjcf_geometry(model, shapes) if self.is_mjcf else self._urdf_geometry(model, shapes)
@@ -115,7 +115,7 @@ class Description:
         return tree
 
     def free_mimics(self) -> tuple[str, ...]:
-        """Joints that move and carry a mimic tag which the model does not hold: all, or those that mean nothing."""
+        """Joints with a mimic tag that are free in the model: those whose tag is invalid or, without ``mimic``, all."""
         if self.is_mjcf:
             return ()
         motion, _ = motion_of(self.tree(), self.what)
@@ -147,7 +147,7 @@ class Description:
         children = {joint.get("name", ""): child.get("link", "") for joint in motion.iterfind("joint")
                     if (child := joint.find("child")) is not None}  # fmt: skip
         if lost := [link for name, link in children.items() if not model.existFrame(name)]:
-            raise InvalidModel(f"{self.what} has links that hang on no root, but on each other: {', '.join(lost)}")
+            raise InvalidModel(f"{self.what} has links that are joined in a circle, without a root: {', '.join(lost)}")
         if renamed:
             with_own_names(model)
         model, contradictions = coupled(model, couplings)
@@ -182,7 +182,7 @@ class Description:
 
     def _read_mjcf(self) -> tuple[pin.Model, list[str]]:
         if self.base != "fixed":
-            raise InvalidModel(f"{self.what} is MJCF: what joins its base to the world is said there, by <freejoint/>")
+            raise InvalidModel(f"{self.what} is MJCF, which defines the joint of its base itself, e.g. by <freejoint/>")
         with self._file() as path, caught_prints() as prints:
             try:
                 model = pin.buildModelFromMJCF(path)

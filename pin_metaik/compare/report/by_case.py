@@ -113,7 +113,7 @@ def convergence(results: Results) -> Section | None:
     figure = Figure("convergence", caption, draw, figures.panel_size(len(curves)))
     text = (
         "Metaheuristics alone: the distance in metres plus the angle in radians that is left. A pose counts as met at "
-        "1e-5. Compiled descents keep no trace of their way.",
+        "1e-5. Compiled descents record no convergence.",
     )
     return Section("Convergence", text, (), (figure,))
 

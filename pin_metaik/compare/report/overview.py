@@ -156,7 +156,7 @@ def reading(results: Results) -> Section:
         "`lm` is Levenberg-Marquardt (Chan) from the given start alone, `lm+restarts` goes on from random ones; `dls` "
         "is the compiled damped least squares with limits inside the step, `qp` a quadratic program a step. `gwo` is a "
         "metaheuristic alone, `gwo+dls` lets it find starts (a quarter of what is left of the budget, then its eight "
-        "best points are refined, and again). `default` is `solve_ik` as it comes.",
+        "best points are refined, and again). `default` is `solve_ik` without settings.",
     )
     unranked = [method for method in results.methods if method not in results.rankable]
     if unranked:

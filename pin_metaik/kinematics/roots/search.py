@@ -87,13 +87,12 @@ def by_loop(
     roots: Roots,
     found: int,
     near: int,
-    most: int,
     loop: EliminationScratch,
     work: ComplexScratch,
 ) -> tuple[int, int, int]:
     """Add the roots that one loop leads to: how many there are then, how many are nearly real, and evaluations.
 
-    These are ``most`` or fewer. Those of zeros beyond the unit circle are the conjugates of others.
+    Those of zeros beyond the unit circle are the conjugates of others.
     """
     spent = 0
     if not find_zeros(arm, target, number, loop):
@@ -104,8 +103,6 @@ def by_loop(
         inside = z.real * z.real + z.imag * z.imag < 1.0 + ON_CIRCLE and z != 0.0
         if not inside or not coordinates_of(arm, z, loop, roots.values, x):
             continue
-        if spent + STEPS > most:
-            break
         _, last, more = newton(arm, roots.target, x, STEPS, EXACT, work)
         spent += more
         if last < ARRIVED:
@@ -124,12 +121,15 @@ def by_paths(
     roots: Roots,
     found: int,
     near: int,
-    most: int,
     path: PathScratch,
+    most: int,
     work: ComplexScratch,
 ) -> tuple[int, int, int]:
-    """The same for the ends of paths from the pose ``start``, where ``ends`` (k, 6) are; they are moved."""
-    spent = follow_each(arm, start, roots.target, ends, arrived, most, path, work)
+    """The same for the ends of paths from the pose ``start``, where ``ends`` (k, 6) are; they are moved.
+
+    Paths end early where they take more than ``most`` evaluations together.
+    """
+    spent = follow_each(arm, start, roots.target, ends, arrived, path, most, work)
     x = roots.x
     for k in range(ends.shape[0]):
         for c in range(6):
@@ -142,8 +142,8 @@ def by_paths(
 
 
 @jit(
-    "UniTuple(i8, 3)(f8[:,::1], i8[:,::1], f8[::1], i8[::1], f8[::1], i8[::1], c16[:,::1], c16[:,:,::1], i8, i8,"
-    " c16[:,::1], c16[:,::1])"
+    "UniTuple(i8, 3)(f8[:,::1], i8[:,::1], f8[::1], i8[::1], f8[::1], i8[::1], c16[:,::1], c16[:,:,::1], i8,"
+    " i8, c16[:,::1], c16[:,::1])"
 )
 def find_roots(
     joints: Floats,
@@ -171,7 +171,7 @@ def find_roots(
         starts: (w, 12) poses to follow paths from after that, until all are found.
         known: (w, k, 6) their roots, as far as known.
         degree: How many there can be; the search ends with so many.
-        most: Evaluations to spend at most.
+        most: Evaluations that it may take.
         points: (m, 6) gets the roots.
         nearly: (m, 6) gets what may be a double root, and is nearly real.
 
@@ -183,13 +183,15 @@ def find_roots(
     ends, arrived = np.empty(known.shape[1:], np.complex128), np.empty(known.shape[1], np.int64)
     found = near = spent = 0
     for number in loops:
-        found, near, more = by_loop(arm, target, number, roots, found, near, most - spent, loop, work)
+        if spent + ROOTS * STEPS > most:
+            return found, near, spent
+        found, near, more = by_loop(arm, target, number, roots, found, near, loop, work)
         spent += more
         if found >= degree:
             return found, near, spent
     for w in range(starts.shape[0]):
         ends[:] = known[w]
-        found, near, more = by_paths(arm, starts[w], ends, arrived, roots, found, near, most - spent, path, work)
+        found, near, more = by_paths(arm, starts[w], ends, arrived, roots, found, near, path, most - spent, work)
         spent += more
         if found >= degree:
             break

@@ -15,7 +15,7 @@ from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE, SHIFT
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.paths import ChainArrays
 from pin_metaik.kinematics.proofs.closed_forms import Place
-from pin_metaik.kinematics.roots.real import BEYOND, ENDLESS, NEARLY, REAL
+from pin_metaik.kinematics.roots.real import BEYOND, NEARLY, REAL, UNBOUNDED
 
 Complexes: TypeAlias = NDArray[np.complex128]
 Ints: TypeAlias = NDArray[np.int64]
@@ -109,8 +109,8 @@ class SixJoints:
     known: Complexes
     loops: Ints
 
-    def at(self, pose: Array, most: int = ENDLESS) -> Configurations:
-        """All configurations for a world pose (4, 4) of the tip, or those that ``most`` evaluations find."""
+    def at(self, pose: Array, most: int = UNBOUNDED) -> Configurations:
+        """All configurations for a world pose (4, 4) of the tip; those that ``most`` evaluations find."""
         from pin_metaik.kinematics.proofs.targets import exact_pose
         from pin_metaik.kinematics.roots.counting import simple_roots
         from pin_metaik.kinematics.roots.search import find_roots
@@ -272,7 +272,7 @@ def _by_elimination(
     for pose in poses:
         there = []
         for number in range(LOOPS):
-            count, *_ = find_roots(*arm, pose.real.copy(), np.array([number]), *none, MOST, ENDLESS, *room)
+            count, *_ = find_roots(*arm, pose.real.copy(), np.array([number]), *none, MOST, UNBOUNDED, *room)
             found[number] += count / len(poses)
             there.append(room[0, :count].copy())
         points = _distinct(arm, np.concatenate(there))

@@ -61,12 +61,16 @@ def read_image(path: Path) -> Pixels:
     try:
         with Image.open(BytesIO(data), formats=FORMATS) as image:  # which has no bytes that it only says it has
             if image.width * image.height * (1 if image.mode in GREY else 4) > MOST:
-                raise ValueError(f"{image.width} x {image.height} pixels are too many; {MOST:,} grey ones are not")
+                raise ValueError(
+                    f"{image.width} x {image.height} pixels are too many: at most {MOST:,} grey ones are read"
+                )
             return _pixels(image)
     except UnidentifiedImageError:
-        raise InvalidGeometry(f"{path} is not an image: a map is a PGM, a PNG or what else Pillow reads") from None
+        raise InvalidGeometry(
+            f"{path} is not an image: a map is a PGM, a PNG or another format that Pillow reads"
+        ) from None
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as reason:
-        raise InvalidGeometry(f"{path} is no image that can be read, or ends early: {reason}") from None
+        raise InvalidGeometry(f"{path} cannot be read as an image, or ends early: {reason}") from None
 
 
 def _pixels(image: Any) -> Pixels:
