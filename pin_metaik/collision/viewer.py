@@ -19,6 +19,8 @@ from pin_metaik.collision.world import CollisionWorld
 from pin_metaik.errors import FrameNotFound, InvalidSetting
 from pin_metaik.lookup import need
 
+__all__ = ["WorldViewer", "open_viewer"]
+
 WOOD, HELD = np.array([0.72, 0.53, 0.35, 1.0]), np.array([0.2, 0.5, 0.3, 1.0])  # red, green, blue, opacity
 RED = np.array([0.85, 0.12, 0.1])
 FIELD = math.radians(40.0)  # vertical field of view

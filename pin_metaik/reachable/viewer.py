@@ -11,6 +11,8 @@ from pin_metaik.collision.viewer import WorldViewer, open_viewer
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.reachable.result import Reachability
 
+__all__ = ["show_reachability"]
+
 FILLED = 0.3  # edge of the cube at a position, as a share of the distance to the next one
 ASIDE, DISTANCE = np.array([0.35, -1.0, 0.45]), 0.9  # where the page looks from, in sizes of the map
 # Viridis (van der Walt and Smith 2015) from the worst to the best: red, green and blue.
