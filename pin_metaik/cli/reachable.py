@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import time
 from math import degrees, radians
 from pathlib import Path
@@ -19,8 +18,9 @@ from pin_metaik.cli.options import Json
 from pin_metaik.cli.progress import progress_bar
 from pin_metaik.cli.versions import print_json
 from pin_metaik.collision import CollisionWorld, load_scene, scene_names
-from pin_metaik.errors import InvalidSetting, InvalidTarget
+from pin_metaik.errors import InvalidTarget
 from pin_metaik.figures import FORMATS, picture_file
+from pin_metaik.files import read_csv
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.pose import rpy_matrix
 from pin_metaik.optimize import ALGORITHMS, Budget
@@ -107,7 +107,7 @@ def place(
 ) -> None:
     """Find where on the floor to put a robot so that it reaches poses. Exit code 0: all of them, 1: not all."""
     _, chain, around = _asked(robot, frame, world)
-    targets = _read(poses, in_degrees)
+    targets = read_targets(poses, in_degrees)
     with progress_bar("places") as watch:
         found = place_base(
             chain, targets, world=around, algorithm=algorithm, budget=Budget(evaluations=places), rng=rng, watch=watch
@@ -132,13 +132,9 @@ def _asked(robot: str, frame: str | None, scene: str | None) -> tuple[Robot, Cha
     return loaded, chain, None if scene is None else CollisionWorld(loaded, load_scene(scene))
 
 
-def _read(path: Path, in_degrees: bool) -> list[pin.SE3] | NDArray[np.float64]:
+def read_targets(path: Path, in_degrees: bool) -> list[pin.SE3] | NDArray[np.float64]:
     """Poses, or positions (k, 3), from a CSV file; a line of headings may come first."""
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            lines = [line for line in csv.reader(file) if line and not line[0].lstrip().startswith("#")]
-    except OSError as error:
-        raise InvalidSetting(f"cannot read {path}: {error.strerror or error}") from None
+    lines = [line for line in read_csv(path, InvalidTarget) if line and not line[0].lstrip().startswith("#")]
     rows = []
     for number, line in enumerate(lines):
         try:
@@ -148,8 +144,10 @@ def _read(path: Path, in_degrees: bool) -> list[pin.SE3] | NDArray[np.float64]:
                 raise InvalidTarget(
                     f"{path}: row {number + 1} has words that are no numbers: {','.join(line)}"
                 ) from None
-    if not rows or {len(row) for row in rows} not in ({3}, {6}):
-        raise InvalidTarget(f"{path}: each row is x,y,z or x,y,z,roll,pitch,yaw, the same in all, and there is one")
+    if not rows or {len(row) for row in rows} not in ({3}, {6}) or not np.isfinite(rows).all():
+        raise InvalidTarget(
+            f"{path}: each row is x,y,z or x,y,z,roll,pitch,yaw, finite, the same in all; and there is one"
+        )
     if len(rows[0]) == 3:
         return np.array(rows)
     turn = radians(1.0) if in_degrees else 1.0

@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.collision.numbers import real
 from pin_metaik.errors import InvalidGeometry
+from pin_metaik.mesh_files import check_mesh, is_ply
 from pin_metaik.notice import notice
-from pin_metaik.ply import SUFFIX, read_ply
+from pin_metaik.ply import read_ply
 from pin_metaik.said import warn
 
 FLAT = 1e-9  # thickness of a set of points, in its lengths, below which it has none
@@ -79,6 +80,8 @@ class Mesh:
     def read(path: str | Path, scale: float = 1.0) -> Mesh:
         """Read a mesh from a file in a format that coal reads: .stl, .obj, .dae, .ply and others.
 
+        Of a .dae, its unit and its upward axis are left out, as Pinocchio leaves them out.
+
         Args:
             path: The file.
             scale: Factor from its numbers to metres: 0.001 for millimetres.
@@ -116,9 +119,10 @@ def surface(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> Any:
 
 
 def _read(file: Path, scale: float) -> Mesh:
-    if file.suffix.lower() == SUFFIX:
+    if is_ply(file):
         vertices, triangles = read_ply(file, InvalidGeometry)
         return Mesh(scale * vertices, triangles, file.name)
+    check_mesh(file, InvalidGeometry)
     try:
         model = coal.MeshLoader(coal.BV_OBBRSS).load(str(file), np.full(3, scale))
     except (ValueError, RuntimeError) as error:

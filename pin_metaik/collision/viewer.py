@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from contextlib import suppress
 from typing import Any
 
 import coal
@@ -100,14 +101,15 @@ class WorldViewer(ViserVisualizer):  # type: ignore[misc]  # Pinocchio has no ty
         """Draw what Pinocchio's visualizer draws as it does, and the rest as triangles."""
         shape = geometry_object.geometry
         if geometry_object.meshPath or isinstance(shape, coal.Box | coal.Sphere | coal.Cylinder):
-            super().loadViewerGeometryObject(geometry_object, prefix, color)
-        else:
-            name = f"{prefix}/{geometry_object.name}"
-            red, green, blue, opacity = geometry_object.meshColor if color is None else color
-            vertices, triangles = surface(shape)
-            self.frames[name] = self.viewer.scene.add_mesh_simple(
-                name, vertices, triangles, color=(red, green, blue), opacity=opacity, flat_shading=True
-            )
+            with suppress(Exception):  # trimesh stumbles, in many ways, over files that coal has read
+                super().loadViewerGeometryObject(geometry_object, prefix, color)
+                return
+        name = f"{prefix}/{geometry_object.name}"
+        red, green, blue, opacity = geometry_object.meshColor if color is None else color
+        vertices, triangles = surface(shape)
+        self.frames[name] = self.viewer.scene.add_mesh_simple(
+            name, vertices, triangles, color=(red, green, blue), opacity=opacity, flat_shading=True
+        )
 
     def _redden(self, names: set[str]) -> None:
         """Show the red twins of the bodies of these names, and of the others the pieces themselves."""

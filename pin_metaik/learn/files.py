@@ -90,7 +90,7 @@ def regressor_of(arrays: Mapping[str, np.ndarray], place: str) -> Regressor:
         inputs, output = (Scale(*numbers(arrays[key], 2, n)) for key, n in (("inputs", first), ("output", 1)))
         mse, iterations, seconds, converged = numbers(arrays["trained"], 4).tolist()
         trace = numbers(arrays["trace"], np.size(arrays["trace"]))
-    except (MetaIKError, ValueError, TypeError) as error:
+    except (MetaIKError, ValueError, TypeError, OverflowError) as error:
         raise InvalidSetting(f"{place} is not a saved network: {error}") from None
     training = Training(w, mse, int(iterations), seconds, bool(converged), False, trace)
     return Regressor(network, w, inputs, output, training)

@@ -7,7 +7,7 @@ import re
 import tempfile
 import xml.etree.ElementTree as ET
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,9 +16,9 @@ from weakref import WeakKeyDictionary
 
 import pinocchio as pin
 
-from pin_metaik import ply
 from pin_metaik.arguments import checked, checked_as
 from pin_metaik.errors import InvalidModel
+from pin_metaik.mesh_files import check_mesh
 from pin_metaik.optimize.settings import one_of
 from pin_metaik.robots import plausible
 from pin_metaik.robots.couplings import NO_COUPLINGS, coupled, make_ready, read_couplings, with_own_names
@@ -26,7 +26,7 @@ from pin_metaik.robots.loops import Loops, equalities_not_read, read_loops
 from pin_metaik.robots.macros import sign_of_xacro
 from pin_metaik.robots.prints import caught_prints, explain
 from pin_metaik.robots.spelling import misspelt
-from pin_metaik.robots.text import outermost, parsed
+from pin_metaik.robots.text import mjcf_meshes, outermost, parsed
 from pin_metaik.robots.wording import Shapes, motion_of, negative_sizes, shapes_of
 
 Base = Literal["fixed", "free flyer", "planar"]
@@ -164,7 +164,7 @@ class Description:
         shaped, counts = shapes_of(tree, shapes)
         text = ET.tostring(shaped, encoding="unicode")
         folders = [str(folder) for folder in (self.source or Path("here")).absolute().parents]
-        _check_ply(tree, folders)
+        _check_meshes((mesh.get("filename", "") for mesh in tree.iter("mesh")), folders)
         with caught_prints() as prints:
             try:
                 geometry = pin.buildGeomFromUrdfString(model, text, KINDS[shapes], package_dirs=folders)
@@ -186,7 +186,7 @@ class Description:
         with self._file() as path, caught_prints() as prints:
             try:
                 model = pin.buildModelFromMJCF(path)
-                _ = list(model.names), [frame.name for frame in model.frames]  # ValueError: not text
+                _ = model.name, list(model.names), [frame.name for frame in model.frames]  # ValueError: not text
             except (ValueError, RuntimeError, LookupError) as error:
                 why = (prints() or explain(error)).replace(path, self.what)
                 raise InvalidModel(f"{self.what} is not MJCF that can be read: {why}") from None
@@ -198,6 +198,7 @@ class Description:
         return model, [*left, *printed]
 
     def _mjcf_geometry(self, model: pin.Model, shapes: Shapes) -> pin.GeometryModel:
+        _check_meshes(mjcf_meshes(self.text), [str((self.source or Path("here")).absolute().parent)])
         with self._file() as path, caught_prints():
             try:
                 return pin.buildGeomFromMJCF(model, path, KINDS[shapes])
@@ -225,15 +226,13 @@ def description_of(model: pin.Model) -> Description | None:
     return _MADE_FROM.get(model)
 
 
-def _check_ply(tree: ET.Element, folders: list[str]) -> None:
-    """Read meshes in PLY, where they may be, before Pinocchio does: a damaged one would end the process.
+def _check_meshes(names: Iterable[str], folders: list[str]) -> None:
+    """Look at files of meshes, where they may be, before Pinocchio reads them.
 
     Raises:
-        InvalidModel: One cannot be read.
+        InvalidModel: One is damaged such that reading it would end the process, or never end.
     """
     folders = [*folders, *os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep)]
-    for name in {mesh.get("filename", "") for mesh in tree.iter("mesh")}:
-        if name.lower().endswith(ply.SUFFIX):
-            tail = re.sub(r"^\w+://", "", name)
-            for path in filter(Path.is_file, (Path(folder, tail) for folder in folders)):
-                ply.read_ply(path, InvalidModel)
+    for tail in {re.sub(r"^\w+://", "", name) for name in names}:
+        for folder in folders:
+            check_mesh(Path(folder, tail), InvalidModel)

@@ -97,9 +97,10 @@ def joints_of(posture: Posture, chain: Chain) -> tuple[list[int], Array, Array]:
 
 def _as_span(name: str, value: float | tuple[float, float]) -> tuple[float, float]:
     """A number, or a range, as a range."""
-    span = np.asarray(value, dtype=float) if np.ndim(value) == 0 else array(name, value, 2, finite=False)
-    least, most = (float(span), float(span)) if span.ndim == 0 else (float(span[0]), float(span[1]))
+    several = isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim > 0)
+    span = value if several else (value, value)
+    least, most = array(f"joint {name!r}", span, 2, error=InvalidTarget, finite=False)
     if not math.isfinite(least) and least == most:
         raise InvalidTarget(f"a posture gives joint {name!r} a finite value or a range (least, most), got {value!r}")
     check_range(f"joint {name!r}", least, most)
-    return least, most
+    return float(least), float(most)

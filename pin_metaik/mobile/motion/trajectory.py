@@ -134,7 +134,9 @@ class Trajectory:
     """
 
     def __init__(self, phases: Sequence[Phase], start: tuple[float, float, float], v: float = 0.0) -> None:
-        array("phases", [tuple(phase) for phase in phases] or np.empty((0, 4)), "p", 4)
+        rows = array("phases", [tuple(phase) for phase in phases] or np.empty((0, 4)), "p", 4)
+        if len(rows) and rows[:, 0].min() < 0.0:
+            raise InvalidSetting(f"a phase lasts 0 s or longer, got {rows[:, 0].min():g} s")
         array("start", start, 3)
         within("v", v, 0)
         self.phases = tuple(phases)

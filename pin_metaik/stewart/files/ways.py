@@ -11,6 +11,7 @@ import numpy as np
 from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidTarget
+from pin_metaik.files import read_csv
 from pin_metaik.output import writable
 from pin_metaik.stewart.kinematics.trajectory import Motion, Trajectory
 from pin_metaik.stewart.platform.poses import pose_at
@@ -36,11 +37,7 @@ def read_trajectory(path: str | Path, metres: float = 1.0, radian: float = DEGRE
         InvalidTarget: It cannot be read, has other columns, values that are not numbers, or times that do not ascend;
             the message names the line.
     """
-    try:
-        with Path(path).open(encoding="utf-8-sig", newline="") as file:
-            rows = list(csv.reader(file))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InvalidTarget(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from None
+    rows = read_csv(Path(path), InvalidTarget)
     names = [name.strip().lower() for name in rows[0]] if rows else []
     unknown = [name for name in names if name not in COLUMNS]
     missing = [name for name in NEEDED if name not in names]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -14,9 +13,11 @@ import pinocchio as pin
 from pin_metaik.collision import Obstacle, load_scene, scene_names
 from pin_metaik.collision.drawing import surface
 from pin_metaik.errors import InvalidGeometry
+from pin_metaik.files import json_values, read_text
 from pin_metaik.gui.look.robot import pose_of, put
 from pin_metaik.gui.pages.arms.arm import Scenery
 from pin_metaik.gui.tab import ROOT, Tab
+from pin_metaik.toml import toml_values
 
 NODE = f"{ROOT}/obstacles"
 WOOD = (184, 135, 89)
@@ -147,16 +148,11 @@ def entries_in(path: Path) -> list[dict[str, Any]]:
     Raises:
         InvalidGeometry: It is neither TOML nor JSON, or has no list of obstacles.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-        content = tomllib.loads(text) if path.suffix.lower() == ".toml" else json.loads(text)
-        entries = content["obstacle"]
-        if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
-            raise TypeError
-    except (ValueError, RecursionError) as reason:
-        raise InvalidGeometry(f"{path.name} cannot be read: {reason}") from None
-    except (KeyError, TypeError):
-        raise InvalidGeometry(f"{path.name} has no list of obstacles: [[obstacle]] above each") from None
+    values = toml_values if path.suffix.lower() == ".toml" else json_values
+    content = values(read_text(path, InvalidGeometry), path.name, InvalidGeometry)
+    entries = content.get("obstacle") if isinstance(content, dict) else None
+    if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+        raise InvalidGeometry(f"{path.name} has no list of obstacles: [[obstacle]] above each")
     return entries
 
 
