@@ -1,11 +1,11 @@
 """All solutions of six joints, and all self-motions of seven: what is missed, what is wrong, and how long it takes.
 
-    python benchmarks/ik_complete.py [six fewer peers seven] [--arms ur5 ...] [--random 500] [--descents 5000] ...
+    python benchmarks/ik_complete.py [six peers seven] [--arms ur5 ...] [--random 500] [--descents 5000] ...
 
 Writes the sections named, default all, into the page, and leaves the others as they are; each says by which command it
-was measured, when and on what machine. *fewer* is *six* with fewer poses, for all arms in a shorter time. The truth is
-the union of all solvers and of random descents, each judged by Pinocchio. Peers are installed by ``pip install
-'.[branches]'``; one that is not installed, or needs minutes to derive an arm's equations, is left out there.
+was measured, when and on what machine. The truth is the union of all solvers and of random descents, each judged by
+Pinocchio. Peers are installed by ``pip install '.[branches]'``; one that is not installed, or needs minutes to derive
+an arm's equations, is left out of that arm's row.
 """
 
 from __future__ import annotations
@@ -329,7 +329,6 @@ def seven_row(name: str, options: argparse.Namespace) -> str:
 
 SECTIONS: dict[str, tuple[str, Callable[[argparse.Namespace], Iterator[list[str]]]]] = {
     "six": ("Six joints", six),
-    "fewer": ("Six joints, fewer poses", six),
     "peers": ("Six joints, solver by solver", side_by_side),
     "seven": ("Seven joints", seven),
 }

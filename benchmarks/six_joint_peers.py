@@ -95,7 +95,7 @@ def with_ik_geo(chain: mik.Chain) -> Iterator[tuple[str, Solve]]:
 
         def solve(T: Floats) -> Floats:
             try:
-                found = robot.get_ik(T[:3, :3] @ tip[:3, :3].T, T[:3, 3])
+                found = robot.get_ik(np.ascontiguousarray(tip[:3, :3] @ T[:3, :3].T), T[:3, 3])  # column by column
             except BaseException as error:
                 if type(error).__name__ == "PanicException":  # as Rust says where its search finds no bracket
                     return np.empty((0, 6))
