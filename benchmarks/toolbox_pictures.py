@@ -40,8 +40,7 @@ def metaheuristics(tab: Page) -> None:
     tab.choose("Page", "Metaheuristics at work")
     tab.see("Examples of the paper")
     tab.click("Set up")
-    tab.click("Run both side by side")
-    tab.see("pso 2")
+    tab.click_until("Run both side by side", "pso 2")
     tab.wait_until(lambda: tab.text().count("than the shortest") + tab.text().count("not free") >= 2)
     tab.scroll_to("Results")
 

@@ -184,6 +184,8 @@ class Gate:
             writer.write(refused.answer())
         except (OSError, EOFError, ValueError, TimeoutError, asyncio.LimitOverrunError):
             pass  # gone, slow, or no HTTP
+        except asyncio.CancelledError:
+            pass  # the gate closes; asyncio would log a task that ends as cancelled
         finally:
             writer.close()
             with contextlib.suppress(OSError, asyncio.CancelledError):

@@ -10,6 +10,7 @@ from pin_metaik.compare.results.series import Duels
 
 BLUE, RED = (33, 102, 172), (178, 24, 43)
 FULL = 2.0  # decades, at which a colour is full
+DEEP, PALE = 0.75, 0.2  # how deep it is then, of a difference that is significant and of one that is not
 NAME = "flex:0 0 38%;overflow:hidden;text-overflow:ellipsis;white-space:nowrap;text-align:right;padding-right:0.5em"
 TRACK = "flex:1;position:relative;height:1.3em;border-left:1px solid #888;border-right:1px solid #888"
 
@@ -49,20 +50,19 @@ def matrix(fought: Duels) -> str:
             ratio, certain = float(fought.ratios[i, j]), bool(fought.certain[i, j])
             sure = "" if certain else "; the difference is not significant"
             said = _quoted(f"{row} takes {times(ratio)} times the evaluations of {column}{sure}")
-            look = (
-                f"background:{_colour(ratio)};color:{'#000' if certain else '#777'};text-align:center;padding:0 0.3em"
-            )
+            back, front = (_colour(ratio, DEEP), "#000") if certain else (_colour(ratio, PALE), "#666")
+            look = f"background:{back};color:{front};text-align:center;padding:0 0.3em"
             cells.append("<td></td>" if i == j else f'<td title={said} style="{look}">{times(ratio)}</td>')
         lines.append(f'<tr><th scope=row style="text-align:left">{i + 1} {escape(row)}</th>{"".join(cells)}</tr>')
     table = f'<table style="border-collapse:collapse;font-size:0.9em">{"".join(lines)}</table>'
     return _framed(table, "group", "Every method against every other")
 
 
-def _colour(ratio: float) -> str:
-    """White where both take the same, blue where the row takes fewer, red where it takes more."""
+def _colour(ratio: float, depth: float) -> str:
+    """White where both take the same, blue where the row takes fewer, red where it takes more; the deepest is 1."""
     share = min(abs(ratio) / FULL, 1.0)
     end = BLUE if ratio < 0.0 else RED
-    return "rgb({},{},{})".format(*(round(255 + 0.75 * share * (value - 255)) for value in end))
+    return "rgb({},{},{})".format(*(round(255 + depth * share * (value - 255)) for value in end))
 
 
 def _quoted(text: str) -> str:
