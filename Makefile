@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 
-.PHONY: demo test lint tests quick soak urdf docs wheel check-release clean
+.PHONY: demo test lint tests quick soak urdf docs wheel check-release lock clean
 
 demo: $(VENV)/installed
 	$(BIN)/pin-metaik demo
@@ -52,6 +52,13 @@ wheel: $(VENV)/developed
 check-release: wheel
 	$(BIN)/python -m twine check --strict dist/*
 	$(BIN)/python .github/check_wheel.py dist/*.whl
+
+# The versions that CI installs, of everything, for each Python and system: written anew to have newer ones.
+lock:
+	$(PYTHON) -m venv build/lock
+	build/lock/bin/python -m pip install --quiet uv
+	build/lock/bin/uv pip compile --quiet --universal --python-version 3.11 --extra dev --no-annotate \
+		--custom-compile-command "make lock" --upgrade --output-file .github/constraints.txt pyproject.toml
 
 clean:
 	rm -rf $(VENV) dist build .mypy_cache .ruff_cache .pytest_cache

@@ -1,11 +1,11 @@
 """All solutions of six joints, and all self-motions of seven: what is missed, what is wrong, and how long it takes.
 
-    python benchmarks/ik_complete.py [six seven] [--arms ur5 ...] [--random 500] [--singular 200] [--descents 5000] ...
+    python benchmarks/ik_complete.py [six fewer peers seven] [--arms ur5 ...] [--random 500] [--descents 5000] ...
 
-Writes the sections named, default both, into the page, and leaves the other as it is; each says by which command it
-was measured, when and on what machine. The truth is the union of all solvers and of random descents, each judged by
-Pinocchio. Peers are installed by ``pip install pin-metaik[branches]``; one that is not installed, or needs minutes to
-derive an arm's equations, is left out of that arm's row.
+Writes the sections named, default all, into the page, and leaves the others as they are; each says by which command it
+was measured, when and on what machine. *fewer* is *six* with fewer poses, for all arms in a shorter time. The truth is
+the union of all solvers and of random descents, each judged by Pinocchio. Peers are installed by ``pip install
+'.[branches]'``; one that is not installed, or needs minutes to derive an arm's equations, is left out there.
 """
 
 from __future__ import annotations
@@ -20,26 +20,22 @@ from typing import Any
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 from sections import conditions, page_with
+from six_joint_peers import PREBUILT, Floats, Solve, all_peers, quick_peers
 
 import pin_metaik as mik
 from pin_metaik.dexterity import singular_values
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine import DLS
-from pin_metaik.kinematics.paths import matrix_of
 
-Floats = NDArray[np.float64]
-Solve = Callable[[Floats], Floats]
-
-EXACT = 1e-9  # m and rad
+EXACT, ROUGH = 1e-9, 1e-5  # m and rad
 ON_CURVE = 1e-6  # least singular value of the Jacobian below which a solution is one of a curve
 APART = 1e-2  # rad or m: solutions that differ by less in every joint are one
 OFF = 1e-3  # m and rad, of a calibrated arm
 NEAR = 1e-4  # rad or m, from a singularity
-CALLS = 2  # of each solver for a pose, of which the quicker one counts
+CALLS = 5  # of each solver for a pose, of which the quickest counts ...
+LONG = 5e-3  # s: ... but one that took longer is the only one
 MOST = 512  # solutions of one target
-PREBUILT = ["jaco2", "xarm6", "crx10ia"]  # arms whose numbers the peer ssik has
 SIX = ["ur5", "puma560", "rv7fl", "z1", "kinova", "aerial_arm", "bravo7_no_ee", "alexander"]
 SIX += ["ur5 calibrated", "puma560 calibrated", *PREBUILT]
 SEVEN = ["panda", "xarm7", "iiwa14", "pr2 arm"]
@@ -112,39 +108,6 @@ class Count:
     times: list[float] = field(default_factory=list)
 
 
-def peers(chain: mik.Chain, name: str) -> Iterator[tuple[str, Solve]]:
-    """Other solvers that are installed and take this arm: its coordinates (s, 6) for a pose (4, 4)."""
-    rows = [*chain.paths.joints, chain.paths.tips[0]]
-    links = np.array([matrix_of(row) for row in rows])
-    box = np.stack([chain.box.lower, chain.box.upper], axis=1)
-    with suppress(ImportError):
-        import ssik
-
-        quick = name in PREBUILT or len(chain.form)
-        if name in PREBUILT:
-            arm = next(arm for arm in ssik.list_arms() if arm.import_path.endswith(f"{name}_ik"))
-            theirs = ssik.Manipulator.from_prebuilt(arm.name)
-        elif quick:
-            theirs = ssik.Manipulator.from_transforms(links, limits=box)
-        if quick:
-            yield (
-                "ssik",
-                lambda T: np.array([s.q for s in theirs.solve(T, enumerate_windings=False)]).reshape(-1, 6),
-            )
-    with suppress(ImportError):
-        from eaik.IK_Homogeneous import HomogeneousRobot
-
-        frames = np.array([np.linalg.multi_dot([np.eye(4), *links[: k + 1]]) for k in range(7)])
-        robot = HomogeneousRobot(frames)
-        if robot.hasKnownDecomposition():
-
-            def eaik(T: Floats) -> Floats:
-                found = robot.IK(T)
-                return np.array([x for x, rough in zip(found.Q, found.is_LS, strict=True) if not rough]).reshape(-1, 6)
-
-            yield "EAIK", eaik
-
-
 def inside(chain: mik.Chain, X: Floats) -> Floats:
     """Those of the coordinates (s, n) that whole turns bring inside the limits, there."""
     turn = 2.0 * np.pi
@@ -191,9 +154,10 @@ def six(options: argparse.Namespace) -> Iterator[list[str]]:
         f"of {options.descents:,} random descents a pose, but for points of a curve (least singular value below "
         f"{ON_CURVE:g}); *missed*: of these, at random and near-singular poses, by `solve_ik_all` and by its peers "
         "where they take the arm; *wrong*: not accepted by Pinocchio. *Called complete*: share of the random poses, by "
-        "what proves it; *contradicted*: such sets that the union has more than. Times are medians of the random "
-        "poses, the quicker of two calls a pose, of the processor's time, which others on the machine take less from "
-        "than from the clock's; solver by solver, by turns: without boxes (`certify=False`), and with.",
+        "what proves it; *contradicted*: such sets of which the union has more solutions. Times are medians over the "
+        f"random poses of the quickest of {CALLS} calls, or of the only one where it took longer than {1e3 * LONG:g} "
+        "ms, in processor time, which depends less on the load of the machine than the clock; the solvers take turns: "
+        "without boxes (`certify=False`), and with.",
         "",
         "| arm | solutions | missed | wrong | called complete | contradicted | us | us with boxes | peers |",
         "|---|---:|---:|---:|---:|---:|---:|---:|---|",
@@ -207,7 +171,7 @@ def six(options: argparse.Namespace) -> Iterator[list[str]]:
 def six_row(name: str, options: argparse.Namespace) -> str:
     """The row of one arm."""
     chain, rng = chain_of(name), np.random.default_rng(11)
-    others = dict(peers(chain, name))
+    others = dict(quick_peers(chain, name))
     counts = {solver: Count() for solver in ["ours", "boxes", *others]}
     total, proofs, contradicted = {"random": 0, "singular": 0}, dict.fromkeys(mik.Proof, 0), 0
     places = {"random": chain.box.sample(rng, options.random)}
@@ -221,8 +185,8 @@ def six_row(name: str, options: argparse.Namespace) -> str:
             problem = IKProblem.of(chain, goal)
 
             def timed(solver: str, solve: Callable[[], Any], family: str = family) -> Any:
-                took = []
-                for _ in range(1 if family == "singular" else CALLS):
+                took: list[float] = []
+                while not took or (family == "random" and len(took) < CALLS and took[0] < LONG):
                     began = time.thread_time()
                     found = solve()
                     took.append(time.thread_time() - began)
@@ -256,6 +220,54 @@ def six_row(name: str, options: argparse.Namespace) -> str:
         f"| {name} | {of(total)} | {of(ours.missed)}, with boxes {of(boxes.missed)} | {ours.wrong + boxes.wrong} "
         f"| {shares or 'none'} | {contradicted} | {us(ours)} | {us(boxes)} | {theirs or 'none'} |"
     )
+
+
+def side_by_side(options: argparse.Namespace) -> Iterator[list[str]]:
+    """Ours and all peers on random poses of arms of six joints: the lines so far, after each arm."""
+    lines = [
+        f"{options.side} random poses an arm. *Solutions*: of the union of all solvers and of {options.few:,} random "
+        f"descents, to {ROUGH:g} m and rad, inside the limits. *Missed*: of these; *wrong*: not accepted by Pinocchio, "
+        f"to {ROUGH:g}. Times are medians, the quickest of {CALLS} calls a pose, or the only one where that took more "
+        f"than {1e3 * LONG:g} ms, of the processor's time, solver by solver by turns. ik-geo by the family that the "
+        "arm's axes are of; Robotics Toolbox by its elimination in Python, for arms without a closed form.",
+        "",
+        "| arm | solutions | solver | missed | wrong | us |",
+        "|---|---:|---|---:|---:|---:|",
+    ]
+    for name in options.arms or SIX:
+        with suppress(ImportError):
+            lines += side_rows(name, options)
+            yield lines
+
+
+def side_rows(name: str, options: argparse.Namespace) -> list[str]:
+    """The rows of one arm."""
+    chain, rng = chain_of(name), np.random.default_rng(13)
+    solvers: dict[str, Solve] = {"pin_metaik": lambda T: mik.solve_ik_all(chain, T).x, **dict(all_peers(chain, name))}
+    counts, total = {solver: Count() for solver in solvers}, 0
+    mik.solve_ik_all(chain, chain.poses(chain.box.sample(rng, 1))[0, 0])
+    for x in chain.box.sample(rng, options.side):
+        pose, answers = chain.poses(x)[0, 0], {}
+        problem = IKProblem.of(chain, pose)
+        for solver, solve in solvers.items():
+            took: list[float] = []
+            while not took or (len(took) < CALLS and took[0] < LONG):
+                began = time.thread_time()
+                found = solve(pose)
+                took.append(time.thread_time() - began)
+            counts[solver].times.append(min(took))
+            found = inside(chain, found)
+            good = np.array([problem.accepts(q) for q in chain.q(chain.limits.clip(found))], dtype=bool)
+            counts[solver].wrong += int((~good).sum())
+            answers[solver] = found[good]
+        every = union(chain, [*answers.values(), descents(problem.exact, rng, options.few), x[None]])
+        total += len(every)
+        for solver, found in answers.items():
+            counts[solver].missed["random"] += int((away(chain, every, found) > APART).sum())
+    return [
+        f"| {name} | {total} | {solver} | {count.missed['random']} | {count.wrong} | {us(count)} |"
+        for solver, count in counts.items()
+    ]
 
 
 def of(counted: dict[str, int]) -> str:
@@ -317,6 +329,8 @@ def seven_row(name: str, options: argparse.Namespace) -> str:
 
 SECTIONS: dict[str, tuple[str, Callable[[argparse.Namespace], Iterator[list[str]]]]] = {
     "six": ("Six joints", six),
+    "fewer": ("Six joints, fewer poses", six),
+    "peers": ("Six joints, solver by solver", side_by_side),
     "seven": ("Seven joints", seven),
 }
 
@@ -328,6 +342,8 @@ def main() -> None:
     parser.add_argument("--arms", nargs="*", help="default: all of the section")
     parser.add_argument("--random", type=int, default=500, help="poses of each arm of six joints")
     parser.add_argument("--singular", type=int, default=200, help="near-singular poses of each")
+    parser.add_argument("--side", type=int, default=100, help="poses of each arm of six joints, for all peers")
+    parser.add_argument("--few", type=int, default=500, help="descents of each of those")
     parser.add_argument("--poses", type=int, default=200, help="of each arm of seven joints")
     parser.add_argument("--descents", type=int, default=5_000, help="of each pose")
     parser.add_argument("--resolution", type=float, default=0.2, help="of self-motions, rad")
@@ -339,7 +355,7 @@ def main() -> None:
             print(lines[-1], flush=True)
             page = options.out.read_text(encoding="utf-8") if options.out.exists() else ""
             titles = [title for title, _ in SECTIONS.values()]
-            lines = [conditions(("ssik", "eaik")), "", *lines]
+            lines = [conditions(("ssik", "eaik", "ik-geo", "roboticstoolbox-python")), "", *lines]
             options.out.write_text(page_with(page, "# All solutions", titles, title, lines), encoding="utf-8")
 
 

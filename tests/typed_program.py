@@ -42,6 +42,9 @@ def inverse() -> bool:
     proof: mik.Proof | None = result.proof
     every: mik.IKSolutions = mik.solve_ik_all(chain, poses[0])
     labels: tuple[str, ...] = every.labels
+    dimensions: tuple[int, ...] = every.dimensions
+    calm = mik.Weighted("nearest", {chain.names[0]: 5.0})
+    print(dimensions, every.best(calm, q).shape, mik.IKSolver(select=calm).select)
     label: str = result.label
     sets: tuple[mik.IKSolutions, ...] = mik.solve_ik_all_batch(chain, [poses[0], poses[0]], workers=2)
     text: str = export.exported(chain, "python")

@@ -1,4 +1,4 @@
-"""Examples that the help of each command ends with. The tests have the command line read all of them."""
+"""Examples at the end of the help of each command. The tests parse all of them."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ EXAMPLES = {
         "pin-metaik solve ur5 --position 0.3 0.3 0.4 --world table --plot arm.png",
         "pin-metaik solve panda --position 0.68 -0.25 0.6 --rpy 0 90 0 --degrees --world shelf --show",
         "pin-metaik solve my_arm.urdf --position 0.4 0.1 0.5 --seeder gwo --json",
+        "pin-metaik solve ur5 --position 0.3 0.3 0.4 --rpy 0 90 0 --degrees --select nearest --weight elbow_joint=3",
         "pin-metaik solve ur5 --goal 'look_at frame=tool0 point=1,0,0.5'",
     ),
     "robots": ("pin-metaik robots", "pin-metaik robots ur5", "pin-metaik robots --json"),

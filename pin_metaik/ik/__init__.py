@@ -5,6 +5,7 @@ from pin_metaik.ik.all_batch import solve_ik_all_batch
 from pin_metaik.ik.any import IKChoice, solve_ik_any
 from pin_metaik.ik.batch import IKBatch, solve_ik_batch
 from pin_metaik.ik.breaks import BreakReason, PathBreak, Reconfiguration
+from pin_metaik.ik.criteria import Weighted
 from pin_metaik.ik.goals.pose import Target
 from pin_metaik.ik.gravity import gravity_torque
 from pin_metaik.ik.path import IKPath, solve_ik_path
@@ -39,6 +40,7 @@ __all__ = [
     "SelfMotions",
     "Target",
     "Verdict",
+    "Weighted",
     "draw_arm",
     "goals",
     "gravity_torque",

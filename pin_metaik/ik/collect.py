@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import count
 from time import perf_counter
 
@@ -15,6 +14,7 @@ from pin_metaik.ik.exclude import Exclusion
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.refine.descent import Descent
+from pin_metaik.ik.singular import SINGULAR, Continua
 from pin_metaik.ik.starts import drawn
 from pin_metaik.ik.state import SearchState
 from pin_metaik.kinematics.kernel.layout import SLACK, WEIGHT
@@ -28,13 +28,12 @@ VAIN_EACH = 15  # ... and as many more for each solution known, before a search 
 BATCH = 128  # starts between two looks at what came of them
 IN_VAIN = 180_000  # evaluations without any solution after which a search for the first one ends
 MIDDLE = 5000  # evaluations for a solution in the middle of loose tolerances before all of them is aimed at
+FOR_ROOTS = 0.5  # of the budget, to find all roots of six joints; what is left is to descend from them
 ROOM = 0.1  # of the distance between distinct solutions: tolerances that may move a solution so far
 HALF = 0.25  # of it: half width of the boxes that cover all configurations
 COVERED = 16_384  # boxes that a cover may keep; more are a curve of solutions
 AT_A_TIME = 50_000  # boxes between two looks at the clock and at what a watch says
 FINEST, FINER = 1e-7, 20_000  # rad or m, boxes: how closely a kept box without a solution is looked at
-EXACT = 1e-9  # m and rad
-SINGULAR = 1e-6  # least singular value of a Jacobian below which a solution counts as one of a curve
 
 
 def collect(
@@ -119,19 +118,23 @@ class Collection:
         if formed is not None and self._by_closed_form(formed.boxes):
             return
         whole = len(problem.targets) == 1 and all(problem.targets[0].counts) and not problem.goals
-        if not (whole and self._by_roots()):
+        if not (whole and self._by_roots()) or formed is not None:  # in a singularity, beside the roots
             self._by_descents()
-        finite = whole and problem.chain.n <= problem.m and not problem.loose
-        if finite and formed is None and self.complete is None and self._certify:
-            self._keep_exact()
-            self._by_cover()
+        if whole and problem.chain.n <= problem.m and not problem.loose and self.complete is None:
+            if self._certify:
+                self._keep_exact()
+            if not self._by_curves() and self._certify:
+                known = self.known
+                self._by_cover()
+                if self.known > known and self.complete is None:
+                    self._by_curves()
 
     def _by_closed_form(self, whole: Array) -> bool:
         """Descend from the branches of the arm's closed form; whether that is all one can do.
 
-        Each branch that meets the pose exactly has its solution in the end, or it is open whether there are more. Where
-        none does, those are looked at that may do so within the tolerances, ``whole`` (b, 2 n). In a singularity
-        solutions are curves, and branches no places to start from.
+        All of each branch that may meet the pose exactly is near to a solution in the end, or it is open whether there
+        are more. Where none may, those are looked at that may do so within the tolerances, ``whole`` (b, 2 n). In a
+        singularity solutions are curves, and branches no places to start from.
         """
         problem, proof, n = self.problem, self.problem.chain.form_proof, self.problem.chain.n
         assert proof is not None
@@ -144,9 +147,9 @@ class Collection:
         if hidden:
             return False
         boxes = exact if len(exact) else whole
-        missing = boxes[~self._has_solution(boxes)]
+        missing = boxes[~self._near_solution(boxes)]
         self._add_from(problem.limits.clip(missing[:, :n]), len(missing) + 1, branch=False)
-        if len(exact) and self._has_solution(exact).all() and not self._roomy:
+        if len(exact) and self._near_solution(exact).all() and not self._roomy:
             self.complete = Proof.CLOSED_FORM
         return self.known > 0
 
@@ -156,7 +159,7 @@ class Collection:
         Each of them that is inside the limits has its solution in the end, or it is open whether there are more.
         """
         problem = self.problem
-        every = problem.chain._configurations(problem.targets[0].pose.homogeneous)
+        every = problem.chain._configurations(problem.targets[0].pose.homogeneous, self.state.left(FOR_ROOTS))
         if every is None:
             return False
         self.state.spent += every.evaluations
@@ -207,13 +210,11 @@ class Collection:
 
     def _keep_exact(self) -> None:
         """Take solutions to the pose itself; what comes to the same was within the tolerances, near a singularity."""
-        problem, found = self.problem, self.solutions.copy()
-        target = replace(problem.targets[0], position_tolerance=EXACT, orientation_tolerance=EXACT)
-        exactly = IKProblem.of(problem.chain, [target] if target.frame else target)
+        found, exact = self.solutions.copy(), self.problem.exact
         others, self.known = [], 0
         for x in found:
             spent, known, again = self._descent.gather(
-                exactly, x[None], self._found, self.known, self._apart, 2, self.state.left(), branch=False
+                exact, x[None], self._found, self.known, self._apart, 2, self.state.left(), branch=False
             )
             self.state.spent += spent
             if known == self.known and not again:
@@ -222,6 +223,32 @@ class Collection:
         for x in others:  # within the tolerances only, as beyond a limit by less than these
             if not self._near_solution(np.append(x, 0.0 * x)[None])[0] and self.known < len(self._found):
                 self._found[self.known], self.known = x, self.known + 1
+
+    def _by_curves(self) -> bool:
+        """Whether solutions are curves, in a singularity: of each one point is kept, the nearest to where it began.
+
+        Descents go on until those that come to no known curve come to nothing new. It is not proved that these are all.
+        """
+        exact, state = self.problem.exact, self.state
+        every, vain = Continua(exact, self._apart), 0
+        every.add(self.solutions)
+        if not every.curves:
+            return False
+        for index in count():
+            enough = VAIN + VAIN_EACH * (len(every.separate) + len(every.curves))
+            if vain >= enough or state.left() == 0 or state.late():
+                break
+            starts = drawn(exact.chain, self._rng, index, BATCH)
+            found = np.empty((len(self._found), exact.chain.n))
+            spent, known, _ = self._descent.gather(
+                exact, starts, found, 0, self._apart, len(starts), state.left(), branch=False
+            )
+            state.spent += spent
+            vain = 0 if every.add(found[:known]) else vain + len(starts)
+        kept = every.nearest(self._x0)[: len(self._found)]
+        self.known = len(kept)
+        self._found[: self.known] = kept
+        return True
 
     def _by_cover(self) -> None:
         """Cover all configurations with boxes, and look for a solution in each that is kept."""
@@ -276,20 +303,9 @@ class Collection:
         slack = self.problem.whole.records[:, SLACK:WEIGHT]
         return bool((np.abs(slack[np.isfinite(slack)]) > ROOM * self._apart).any())
 
-    def _ways(self, boxes: Array) -> Array:
-        """(b, s, n) how far each solution is from the centre of each of the boxes (b, 2 n), whole turns aside."""
-        return self.problem.limits.separation(boxes[:, None, : self.problem.chain.n], self.solutions)
-
-    def _has_solution(self, boxes: Array) -> NDArray[np.bool_]:
-        """(b,) whether there is a solution in each of the boxes (b, 2 n)."""
-        return _any(self._ways(boxes) <= boxes[:, None, self.problem.chain.n :] + FINEST)
-
     def _near_solution(self, boxes: Array) -> NDArray[np.bool_]:
         """(b,) whether all of each box (b, 2 n) is so near to a solution that nothing in it is distinct from that."""
-        return _any(self._ways(boxes) + boxes[:, None, self.problem.chain.n :] <= self._apart)
-
-
-def _any(met: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """(b,) whether a box meets a condition (b, s, n) in all coordinates of any solution."""
-    some: NDArray[np.bool_] = np.all(met, axis=2).any(axis=1)
-    return some
+        n = self.problem.chain.n
+        ways = self.problem.limits.separation(boxes[:, None, :n], self.solutions) + boxes[:, None, n:]
+        near: NDArray[np.bool_] = np.all(ways <= self._apart, axis=2).any(axis=1)
+        return near

@@ -1,20 +1,21 @@
-"""Criteria for choosing among solutions, by name or of one's own; lower is better."""
+"""Criteria for choosing among solutions, by name, with weights of joints, or of one's own; lower is better."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import partial
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
 import numpy as np
 
-from pin_metaik.arguments import shown
+from pin_metaik.arguments import checked, shown
 from pin_metaik.arrays import Array
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.dexterity import RANK_TOLERANCE, manipulability
 from pin_metaik.errors import InvalidSetting, UnknownName
-from pin_metaik.ik.gravity import gravity_torque
+from pin_metaik.ik.gravity import gravity_loads
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine.descent import Descent
 
@@ -35,9 +36,63 @@ FLAT = 1e-9  # rad or m: nothing moves
 SINGULAR = 1e-4  # of the largest singular value: a direction that wishes do not depend on
 
 
-def displacement(problem: IKProblem, X: Array, x0: Array) -> Array:
+class WeightedMeasure(Protocol):
+    """A measure in which each coordinate counts by a weight (n,), or all alike."""
+
+    def __call__(self, problem: IKProblem, X: Array, x0: Array, weights: Array | float = 1.0) -> Array:
+        """As of a ``Measure``."""
+
+
+@checked
+@dataclass(frozen=True)
+class Weighted:
+    """A criterion by name in which some joints count more, or less, than others.
+
+    Attributes:
+        criterion: ``"nearest"``: a joint of weight 3 counts as if it moved three times as far; ``"limits"``: as if it
+            were three times as near to its limit, of which 1 is at it; ``"torque"``: as if it held three times as much.
+        joints: The weight of each coordinate that is named, at least 0; of all others it is 1.
+    """
+
+    criterion: str
+    joints: Mapping[str, float] = field(hash=False)
+
+    def __post_init__(self) -> None:
+        """Check what needs no chain.
+
+        Raises:
+            UnknownName: No criterion of that name takes weights.
+            InvalidSetting: A weight is below 0, or not finite.
+        """
+        if self.criterion not in WEIGHTED:
+            raise UnknownName("criterion that weights joints", self.criterion, set(WEIGHTED))
+        for name, weight in self.joints.items():
+            if not 0.0 <= weight < math.inf:
+                raise InvalidSetting(f"the weight of a joint is a number of at least 0, got {name}={weight:g}")
+
+    def of(self, names: tuple[str, ...]) -> Array:
+        """Weights (n,) of coordinates by their names.
+
+        Raises:
+            UnknownName: A joint is not among them.
+        """
+        for name in self.joints:
+            if name not in names:
+                raise UnknownName("joint of the chain", name, set(names))
+        return np.array([self.joints.get(name, 1.0) for name in names])
+
+    def measure(self, problem: IKProblem, X: Array, x0: Array) -> Array:
+        """Numbers (k,) for coordinates X (k, n) and a start x0 (n,)."""
+        return WEIGHTED[self.criterion](problem, X, x0, self.of(problem.chain.names))
+
+
+Selection: TypeAlias = str | Weighted | Criterion
+"""What to choose by: a criterion's name, one with weights, or a function of a configuration q (nq,)."""
+
+
+def displacement(problem: IKProblem, X: Array, x0: Array, weights: Array | float = 1.0) -> Array:
     """Distance (k,) of coordinates X (k, n) from x0 (n,), rad and m alike; angles by the shortest way that exists."""
-    distance: Array = np.linalg.norm(problem.limits.nearest_turns(X, x0) - x0, axis=1)
+    distance: Array = np.linalg.norm(weights * (problem.limits.nearest_turns(X, x0) - x0), axis=1)
     return distance
 
 
@@ -46,21 +101,22 @@ def neg_manipulability(problem: IKProblem, X: Array, x0: Array) -> Array:
     return -manipulability(np.array([problem.linearize(x)[1].T for x in X]))
 
 
-def limit_proximity(problem: IKProblem, X: Array, x0: Array) -> Array:
+def limit_proximity(problem: IKProblem, X: Array, x0: Array, weights: Array | float = 1.0) -> Array:
     """How near (k,) the worst joint is to a limit: 0 in mid-range, 1 at a limit; joints without limits do not count."""
     limits = problem.limits
     bounded = np.isfinite(limits.lower) & np.isfinite(limits.upper) & (limits.upper > limits.lower)
     if not bounded.any():
         return np.zeros(len(X))
     lower, upper = limits.lower[bounded], limits.upper[bounded]
-    worst: Array = np.abs((2.0 * X[:, bounded] - lower - upper) / (upper - lower)).max(axis=1)
+    near = np.abs((2.0 * X[:, bounded] - lower - upper) / (upper - lower))
+    worst: Array = (near * np.broadcast_to(weights, len(bounded))[bounded]).max(axis=1)
     return worst
 
 
-def gravity_torques(problem: IKProblem, X: Array, x0: Array) -> Array:
+def gravity_torques(problem: IKProblem, X: Array, x0: Array, weights: Array | float = 1.0) -> Array:
     """Size (k,) of the torques and forces that hold the chain's joints against gravity at X (k, n), N m and N."""
-    torque = gravity_torque(problem.chain)
-    return np.array([torque(q) for q in problem.chain.q(X)])
+    held = gravity_loads(problem.chain)
+    return np.array([np.linalg.norm(weights * held(q)) for q in problem.chain.q(X)])
 
 
 def neg_clearance(problem: IKProblem, X: Array, x0: Array) -> Array:
@@ -84,21 +140,22 @@ def world_of(problem: IKProblem) -> CollisionWorld:
     return problem.world
 
 
-CRITERIA: dict[str, Measure] = {
+WEIGHTED: dict[str, WeightedMeasure] = {
     "nearest": displacement,
-    "manipulability": neg_manipulability,
     "limits": limit_proximity,
     "torque": gravity_torques,
-    "clearance": neg_clearance,
 }
+CRITERIA: dict[str, Measure] = {**WEIGHTED, "manipulability": neg_manipulability, "clearance": neg_clearance}
 
 
-def measure_of(select: str | Criterion) -> Measure:
-    """The measure of a criterion's name, or of somebody's own criterion.
+def measure_of(select: Selection) -> Measure:
+    """The measure of a criterion's name, of one with weights, or of somebody's own criterion.
 
     Raises:
         UnknownName: If there is no criterion of that name.
     """
+    if isinstance(select, Weighted):
+        return select.measure
     if not isinstance(select, str):
         return _measured_by(select)
     if select not in CRITERIA:

@@ -1,4 +1,4 @@
-"""What joints must hold against gravity, as a criterion for choosing among solutions."""
+"""Joint torques against gravity, as a criterion for choosing among solutions."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from pin_metaik.kinematics import Chain
 
 @checked
 def gravity_torque(chain: Chain, payload: float = 0.0, at: ArrayLike = (0.0, 0.0, 0.0)) -> Callable[[Array], float]:
-    """The size of the torques (N m) and forces (N) with which a chain's joints stand still: Pinocchio's g(q).
+    """The norm of the torques (N m) and forces (N) that hold a chain's joints against gravity: Pinocchio's g(q).
 
     Args:
-        chain: Whose joints count; the masses of the whole model do.
-        payload: kg, held by the chain's frame.
+        chain: The chain whose joints are counted; all masses of the model load them.
+        payload: Mass that the chain's frame holds, kg.
         at: (3,) its centre of mass in that frame, m.
 
     Returns:
@@ -30,6 +30,12 @@ def gravity_torque(chain: Chain, payload: float = 0.0, at: ArrayLike = (0.0, 0.0
     Raises:
         InvalidSetting: If nothing has a mass, or the payload is below 0, or ``at`` is not (3,).
     """
+    loads = gravity_loads(chain, payload, at)
+    return lambda q: float(np.linalg.norm(loads(q)))
+
+
+def gravity_loads(chain: Chain, payload: float = 0.0, at: ArrayLike = (0.0, 0.0, 0.0)) -> Callable[[Array], Array]:
+    """The torques (N m) and forces (N) themselves, (n,), of the chain's coordinates; as for ``gravity_torque``."""
     mass, place = number("payload", payload), array("at", at, 3, error=InvalidSetting)
     model, frame = chain.model, chain.frame_ids[0]
     if mass < 0.0:
@@ -38,13 +44,14 @@ def gravity_torque(chain: Chain, payload: float = 0.0, at: ArrayLike = (0.0, 0.0
         raise InvalidSetting(f"the bodies of {model.name!r} have no mass: give a payload, or a model with inertias")
     weight = -mass * np.asarray(model.gravity.linear)
 
-    def torque(q: Array) -> float:
+    def loads(q: Array) -> Array:
         data = chain.data
         held = np.array(pin.computeGeneralizedGravity(model, data, q))
         if mass > 0.0:
             J = pin.computeFrameJacobian(model, data, q, frame, pin.ReferenceFrame.LOCAL)
             turn = pin.updateFramePlacement(model, data, frame).rotation
             held += (turn @ (J[:3] - pin.skew(place) @ J[3:])).T @ weight
-        return float(np.linalg.norm(held @ chain.tangent(chain.x(q))))
+        held_by: Array = held @ chain.tangent(chain.x(q))
+        return held_by
 
-    return torque
+    return loads

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.ik.problem import IKProblem
-from pin_metaik.ik.self_motion.motions import MOTION_BUDGET, RESOLUTION, exactly, find_self_motions, has_curves
+from pin_metaik.ik.self_motion.motions import MOTION_BUDGET, RESOLUTION, find_self_motions, has_curves
 
 FINE = 0.02  # rad or m between the points of a curve that are looked at in a world
 
@@ -24,7 +24,7 @@ def leaves(problem: IKProblem, base: NDArray[np.float64], step: float, most: int
         step: rad or m of joint motion from one point to the next ...
         most: ... or more, if there would be more points than so many.
     """
-    exact = replace(exactly(problem), world=None)
+    exact = replace(problem.exact, world=None)
     if not has_curves(exact):
         return np.empty((0, problem.chain.n))
     curves = find_self_motions(exact, base, RESOLUTION, MOTION_BUDGET).curves

@@ -22,8 +22,8 @@ from pin_metaik.kinematics import Chain
 class CentreOfMass(Bounded):
     """The centre of mass c of the robot over a convex polygon on the ground, between two heights: y = (N c_xy, c_z).
 
-    Over the polygon of its contacts with level ground, a robot that stands still does not tip over. The rows of N are
-    the outward normals of the polygon's edges.
+    A robot at rest does not tip over while its centre of mass is over the polygon of its contacts with level ground.
+    The rows of N are the outward normals of the polygon's edges.
 
     Attributes:
         polygon: Points (k, 2) on the ground, m, of which the convex hull is taken; ``None``: anywhere.
@@ -32,8 +32,8 @@ class CentreOfMass(Bounded):
         most: The largest height, m.
 
     Raises:
-        InvalidTarget: If nothing is asked for, the polygon has no area, the margin is negative or leaves nothing of it,
-            or ``least`` is above ``most``.
+        InvalidTarget: If there is neither a polygon nor a height, the polygon has no area, the margin is negative or
+            leaves nothing of the polygon, or ``least`` is above ``most``.
     """
 
     polygon: ArrayLike | None = None

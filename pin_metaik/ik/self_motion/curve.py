@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
@@ -15,7 +15,7 @@ from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting
-from pin_metaik.ik.criteria import Criterion, measure_of
+from pin_metaik.ik.criteria import Selection, Weighted, measure_of
 from pin_metaik.ik.problem import IKProblem, check_world
 from pin_metaik.optimize.settings import positive
 
@@ -73,17 +73,19 @@ class CurvePoint(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class SelfMotionCurve:
-    """All solutions that a chain with one spare degree of freedom reaches while its frame stands still.
+    """A curve of solutions of one target, for a chain with one spare degree of freedom.
 
-    A connected component of the self-motion manifold (Burdick 1989) inside the limits. Coordinates whose limits leave
-    room for a whole turn are taken as angles on a circle: they end no curve, and come as the copy nearest to ``q0``.
+    A connected component of the self-motion manifold (Burdick 1989) inside the limits. Coordinates whose range is a
+    whole turn or more are treated as angles on a circle: their limits do not end a curve, and they are given as the
+    copy nearest to ``q0``.
 
     Attributes:
-        problem: The target, to be met exactly.
-        base: (nq,) the joints that do not move, and what copies are nearest to.
-        x: (k, n) coordinates of points on the curve, in order; angles on a circle without jumps.
-        t: (k,) how far the joints have moved up to each: the sum of the distances between the points, rad and m alike.
-        ends: Of the beginning and of the end.
+        problem: The problem with the target, which is met exactly.
+        base: (nq,) configuration ``q0``: values of the joints that do not move, and where copies by whole turns are
+            nearest to.
+        x: (k, n) coordinates of points on the curve, in order; angles without jumps.
+        t: (k,) length of the curve up to each point: sum of the distances between points, rad and m weighted alike.
+        ends: Why the curve ends at its beginning and at its end.
     """
 
     problem: IKProblem = field(repr=False)
@@ -100,16 +102,16 @@ class SelfMotionCurve:
 
     @property
     def closed(self) -> bool:
-        """Whether it comes back to where it began."""
+        """Whether the curve is closed: it comes back to its first point."""
         return self.ends[0].reason is EndReason.CLOSED
 
     @property
     def length(self) -> float:
-        """How far the joints move from end to end, rad and m alike."""
+        """Length of the curve in joint space, rad and m weighted alike."""
         return float(self.t[-1])
 
     def q(self, t: ArrayLike) -> Array:
-        """Configurations (..., nq) at t (...), from 0 to ``length``; round and round on a closed curve.
+        """Configurations (..., nq) at t (...), from 0 to ``length``; on a closed curve t is taken modulo ``length``.
 
         Raises:
             InvalidSetting: If t is not finite.
@@ -127,32 +129,42 @@ class SelfMotionCurve:
         positive("step", step)
         return self.q(np.linspace(0.0, self.length, 1 + int(np.ceil(self.length / step))))
 
-    def nearest(self, q: ArrayLike) -> CurvePoint:
-        """The point with the least distance from a configuration (nq,), rad and m alike; angles the shorter way round.
+    @checked
+    def nearest(self, q: ArrayLike, weights: Mapping[str, float] | None = None) -> CurvePoint:
+        """The point nearest to a configuration (nq,), rad and m weighted alike; angles the shorter way round.
 
-        It is the nearest of the whole curve, to 1e-4, as a distance changes by no more than the joints move; but where
-        limits cut off copies by whole turns, as ``best`` finds it.
+        It is the nearest of the whole curve to within 1e-4, because a distance changes by no more than the joints move.
+        Where limits exclude copies by whole turns it is found as in ``best``, without that guarantee.
+
+        Args:
+            q: The configuration.
+            weights: Weights of coordinates by name, default 1; see ``Weighted``.
+
+        Raises:
+            InvalidConfiguration: If ``q`` is not one.
+            UnknownName: If the chain has no joint of such a name.
+            InvalidSetting: If a weight is below 0.
         """
         x = self.problem.chain.x(array("q", q, self.problem.chain.model.nq, error=InvalidConfiguration))
-        measure = measure_of("nearest")
-        return self._least(lambda X: measure(self.problem, self._turned(X), x), self._rate("nearest"))
+        near = Weighted("nearest", weights or {})
+        return self._least(lambda X: near.measure(self.problem, self._turned(X), x), self._rate(near))
 
     @checked
-    def best(self, criterion: str | Criterion) -> CurvePoint:
+    def best(self, criterion: Selection) -> CurvePoint:
         """The point where a criterion is least.
 
         Args:
-            criterion: As for ``IKSolver.select``: a name, or a function of a configuration (nq,). For ``"nearest"`` (to
-                ``q0``) and ``"limits"`` it is the best of the whole curve, to 1e-4, where no joint has finite limits
-                that leave room for a whole turn; others are looked at in every point ``x``, and between the neighbours
-                of each that is better than these.
+            criterion: As for ``IKSolver.select``: a name, ``Weighted``, or a function of a configuration (nq,). For
+                ``"nearest"`` (to ``q0``) and ``"limits"`` the result is the best of the whole curve to within 1e-4, if
+                no joint has finite limits a whole turn or more apart. Any other criterion is evaluated at every point
+                of ``x``, and minimised around each point that is better than its two neighbours.
 
         Raises:
             UnknownName: No criterion of that name.
-            InvalidSetting: The function takes no configuration, or gives no number.
+            InvalidSetting: The function fails for a configuration, or does not return a number.
         """
         measure = measure_of(criterion)
-        if not isinstance(criterion, str):
+        if not isinstance(criterion, (str, Weighted)):
             try:
                 criterion(self.q(0.0))
             except TypeError as error:
@@ -160,7 +172,7 @@ class SelfMotionCurve:
         return self._least(lambda X: measure(self.problem, self._turned(X), self._x0), self._rate(criterion))
 
     def free(self, world: CollisionWorld, step: float = 0.02) -> list[tuple[float, float]]:
-        """Intervals (from, to) of t without a collision, as far as points at most ``step`` apart show.
+        """Intervals (from, to) of t without a collision, sampled at points at most ``step`` (rad and m alike) apart.
 
         Raises:
             InvalidSetting: If the world is another model's, or the step is not above zero.
@@ -197,13 +209,18 @@ class SelfMotionCurve:
         limits = self.problem.limits
         return np.where(limits.multi_turn, limits.nearest_turns(X, self._x0), limits.clip(X))
 
-    def _rate(self, criterion: str | Criterion) -> float | None:
+    def _rate(self, criterion: Selection) -> float | None:
         """How much a criterion changes at most for each unit of joint motion; None: nothing is known."""
         limits = self.problem.limits
-        spans = (limits.upper - limits.lower)[np.isfinite(limits.upper - limits.lower)]
-        if (limits.multi_turn & ~limits.periodic).any() or not isinstance(criterion, str) or not len(spans):
+        if isinstance(criterion, Weighted):
+            name, weights = criterion.criterion, criterion.of(self.problem.chain.names)
+        else:
+            name, weights = criterion if isinstance(criterion, str) else "", np.ones(len(limits.lower))
+        spans = limits.upper - limits.lower
+        if (limits.multi_turn & ~limits.periodic).any() or not np.isfinite(spans).any():
             return None
-        return {"nearest": 1.0, "limits": 2.0 / float(spans.min())}.get(criterion)
+        rates = {"nearest": weights, "limits": 2.0 * weights / spans}
+        return (float(rates[name].max()) or None) if name in rates else None
 
     @cached_property
     def _x0(self) -> Array:

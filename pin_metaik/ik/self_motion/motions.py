@@ -1,9 +1,9 @@
-"""All self-motions of a target: every curve of solutions inside the limits, and what proves that none is missing."""
+"""All self-motions of a target: every curve of solutions inside the limits, and the proof that none is missing."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
 
@@ -13,14 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidBudget, InvalidSetting
-from pin_metaik.ik.criteria import Criterion
+from pin_metaik.ik.criteria import Selection
 from pin_metaik.ik.goals.pose import TargetLike
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.refine import DLS
 from pin_metaik.ik.self_motion.curve import CurveEnd, CurvePoint, EndReason, SelfMotionCurve
 from pin_metaik.kinematics import Chain
-from pin_metaik.kinematics.kernel.layout import ALIGNED, NEAR, SLACK, WEIGHT
 from pin_metaik.kinematics.proofs.boxes import Boxes
 from pin_metaik.optimize import Budget
 from pin_metaik.optimize.settings import positive
@@ -30,13 +29,13 @@ from pin_metaik.watching import Progress, Stopped, Watch, tell
 
 MOTION_BUDGET = Budget(evaluations=400_000)
 RESOLUTION = 0.3  # rad or m
-EXACT = 1e-9  # m and rad, how closely curves keep to the target
 STEP = 0.05  # rad or m between the points of a curve, at most
 POINTS = 20_000  # of a curve at most
 CHUNK, MOST = 4_096, 8_192  # boxes looked at, and kept, at a time; kept in all
 FINER = 8.0, 64.0, 512.0  # by how much smaller boxes that are far from all curves are looked at
 SEEDS = 512  # solutions to follow curves from, at a time
 LOOKED_UP, DRAWN, SEED = 128, 512, (DEFAULT_SEED, 0)  # configurations to descend from where boxes have no end
+DRAWN_BESIDE = 64  # where they cover all
 SAME = 5e-3  # rad or m: a solution this near to a curve is on it
 STRAIGHT = 1e-2  # triple product of a wrist's axes below which it is bent to neither side ...
 FLAT = 0.2  # ... and in the middle of a box, below which it may be straight somewhere in it
@@ -48,12 +47,12 @@ class SelfMotions:
     """The self-motions of a chain with one spare degree of freedom for one target.
 
     Attributes:
-        curves: The longest first.
+        curves: The curves, the longest first.
         complete: ``Proof.BOXES``: every solution inside the limits is within ``resolution`` of a point of one of the
-            curves, in every coordinate but those of a wrist whose axes meet, and with that wrist bent to the same side
-            or nearly straight (a triple product of its axes below 0.01). So a curve is missing only if it stays that
-            near to others. ``None``: nothing is proved.
-        resolution: rad or m.
+            curves, so that a missing curve would be that close to these all along. Of a spherical wrist not its three
+            coordinates are compared but only the side to which it is bent, unless it is nearly straight (triple product
+            of its axes below 0.01). ``None``: nothing is proved.
+        resolution: rad or m; see ``complete``.
         evaluations: Forward kinematics computed, and boxes looked at.
         seconds: Time taken, s.
         interrupted: Whether a watch ended the search.
@@ -72,16 +71,16 @@ class SelfMotions:
     def __iter__(self) -> Iterator[SelfMotionCurve]:
         return iter(self.curves)
 
-    def nearest(self, q: ArrayLike) -> CurvePoint:
+    def nearest(self, q: ArrayLike, weights: Mapping[str, float] | None = None) -> CurvePoint:
         """The point of all curves with the least distance from a configuration (nq,); see ``SelfMotionCurve.nearest``.
 
         Raises:
             InvalidSetting: There is no curve.
         """
-        return min((curve.nearest(q) for curve in self._some()), key=_value)
+        return min((curve.nearest(q, weights) for curve in self._some()), key=_value)
 
     @checked
-    def best(self, criterion: str | Criterion) -> CurvePoint:
+    def best(self, criterion: Selection) -> CurvePoint:
         """The point of all curves where a criterion is least; see ``SelfMotionCurve.best``.
 
         Raises:
@@ -116,16 +115,16 @@ def self_motions(
 ) -> SelfMotions:
     """Find every curve of solutions of a target that leaves a chain one spare degree of freedom.
 
-    Boxes of configurations that are not excluded cover all solutions. A descent from each that no known curve comes
-    near leads to a point of another curve, which is followed both ways to its ends.
+    Boxes of configurations that cannot be excluded cover all solutions. From each box that no known curve comes near, a
+    descent leads to a point of another curve, which is followed in both directions to its ends.
 
     Args:
         chain: The joints to move and the frame to place.
-        target: As for ``solve_ik``, with one axis less that counts than the chain has coordinates. Curves keep to
-            the middle of its tolerances.
-        q0: (nq,) configuration that has the joints outside the chain and the locked ones, and that copies by whole
-            turns are nearest to; default: the chain's reference.
-        resolution: rad or m; how near to known curves one that is missing must stay.
+        target: As for ``solve_ik``; it must constrain one axis less than the chain has coordinates. The curves meet the
+            middle of its tolerances.
+        q0: (nq,) configuration that gives the values of joints outside the chain and of locked ones, and to which
+            copies by whole turns are nearest; default: the chain's reference.
+        resolution: rad or m; how close to the curves found a missing one would have to be (``SelfMotions.complete``).
         budget: Evaluations that may be spent, and seconds.
         watch: Called between boxes with evaluations spent and allowed; True ends the search.
 
@@ -139,7 +138,7 @@ def self_motions(
     if budget.evaluations is None:
         raise InvalidBudget("finding self-motions needs a budget of evaluations: Budget(evaluations=...)")
     chain = chain if q0 is None else chain.at(q0)
-    problem = exactly(IKProblem.of(chain, target))
+    problem = IKProblem.of(chain, target).exact
     if not has_curves(problem):
         spare = chain.n - problem.m
         raise InvalidSetting(
@@ -153,15 +152,6 @@ def self_motions(
 def has_curves(problem: IKProblem) -> bool:
     """Whether a problem's solutions are curves: one frame, one spare coordinate, and nothing but a target."""
     return len(problem.targets) == 1 and problem.chain.n == problem.m + 1 and not problem.goals
-
-
-def exactly(problem: IKProblem) -> IKProblem:
-    """The same problem in the middle of its tolerances."""
-    records = problem.records.copy()
-    slacks = records[:, SLACK:WEIGHT]
-    records[:, SLACK:WEIGHT] = np.where(np.isfinite(slacks), 0.0, np.inf)
-    records[:, [NEAR, ALIGNED]] = np.where(np.isfinite(records[:, [NEAR, ALIGNED]]), EXACT, np.inf)
-    return replace(problem, records=records)
 
 
 def find_self_motions(
@@ -203,7 +193,8 @@ class _Search:
     def run(self) -> None:
         """Cover the limits with boxes, and find the curves that go through those that are kept.
 
-        Where there is no end of boxes, curves are found from an atlas and at random.
+        Where the boxes do not come to an end, curves are found from an atlas and at random; where they do, some random
+        descents are made as well, because curves that stay near to others may be missing.
         """
         target, chain = self._problem.targets[0], self._problem.chain
         free = not target.counts[3], not target.counts[4], not target.counts[5]
@@ -213,22 +204,24 @@ class _Search:
             boxes = chain._boxes(0, target.pose.homogeneous, near, 0.0, free, least=0.5 * self._resolution)
         if boxes is not None:
             self.covered = self._are_covered(boxes)
+        starts = chain.sample(DRAWN_BESIDE if self.covered else DRAWN, SEED)
         if not self.covered:
-            self._from(
-                np.concatenate([self._problem.near(LOOKED_UP), chain.sample(DRAWN, SEED)]), 0.5 * self._resolution
-            )
+            starts = np.concatenate([self._problem.near(LOOKED_UP), starts])
+        self._from(starts, 0.5 * self._resolution)
 
     def _are_covered(self, boxes: Boxes) -> bool:
         """Find the curves of all boxes; whether there is one near all that are kept.
 
-        A wrist is bent to one side and then to the other. Where it is nearly straight, its first and last joint may
-        turn against each other while no other one moves: there its joints count, and are split, like all others.
+        A wrist is bent to one side and then to the other, in boxes that are kept for either. Where it is nearly
+        straight, its first and last joint may turn against each other while no other one moves: there its joints count,
+        and are split, like all others.
         """
-        if not len(boxes.arm.wrist):
-            return self._is_covered(boxes, self._kept(boxes), None)
+        every = self._kept(boxes)
+        if not len(boxes.arm.wrist) or every is None:
+            return self._is_covered(boxes, every, None)
         covered, straight = True, []
         for side in (0, 1):
-            part = boxes.bent(side)
+            part = boxes.bent(side).among(every, boxes.least)
             kept = self._kept(part)
             if kept is None:
                 return False

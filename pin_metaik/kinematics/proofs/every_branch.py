@@ -1,7 +1,7 @@
 """All configurations of an arm with a closed form for a pose, with what proves that they are all, in one call.
 
-The branches of the closed form are the configurations, and the same branches on balls are the proof: each of those
-that may hold a configuration has one of them in it.
+The branches of the closed form are the configurations, and the same branches on balls are the proof: all of each that
+may hold a configuration is near to one of them. Two branches may be near to the same one, beside a singularity.
 """
 
 from __future__ import annotations
@@ -32,7 +32,6 @@ from pin_metaik.kinematics.proofs.targets import exactly
 
 BRANCHES = 8
 OPEN = -1  # solutions, where this is not all that can be said
-WITHIN = 1e-7  # rad: how far outside of a ball a solution may be by rounding
 
 unpack = inline(chain_in)
 
@@ -59,8 +58,8 @@ def exact_branches(
 
 
 @inline
-def holds(wiring: Ints, bounds: Bounds, angles: Floats, radii: Floats, x: Floats) -> bool:
-    """Whether x (6,) is on a branch: within the radii of its angles, or of copies of them inside the limits."""
+def is_around(wiring: Ints, bounds: Bounds, angles: Floats, radii: Floats, x: Floats, apart: float) -> bool:
+    """Whether all of a branch, each angle within its radius and inside the limits, is so near to x (6,)."""
     for s in range(6):
         c = wiring[s, COLUMN]
         angle, radius, lower = angles[s], radii[s], bounds.lower[c]
@@ -69,24 +68,21 @@ def holds(wiring: Ints, bounds: Bounds, angles: Floats, radii: Floats, x: Floats
         way = x[c] - angle
         if bounds.multi_turn[c] == 1:
             way -= FULL_TURN * np.round(way / FULL_TURN)
-        if abs(way) > radius + WITHIN:
+        if abs(way) + radius > apart:
             return False
     return True
 
 
 @inline
 def are_all(
-    wiring: Ints, bounds: Bounds, x: Floats, count: int, most: float, angles: Floats, radii: Floats, faults: Floats
+    wiring: Ints, bounds: Bounds, x: Floats, count: int, apart: float, angles: Floats, radii: Floats, faults: Floats
 ) -> bool:
-    """Whether each branch that may hold a configuration is no wider than ``most`` (rad), and has one of x (8, 6)."""
+    """Whether nothing in any branch that may hold a configuration is distinct from all of x (8, 6)."""
     for number in range(BRANCHES):
         if faults[number, 0] == POSSIBLE:
-            for s in range(6):
-                if radii[number, s] > most:
-                    return False
             found = False
             for k in range(count):
-                found = found or holds(wiring, bounds, angles[number], radii[number], x[k])
+                found = found or is_around(wiring, bounds, angles[number], radii[number], x[k], apart)
             if not found:
                 return False
     return True
@@ -118,7 +114,7 @@ def solve_in(
         pose, skew = exactly(numbers_of(target))
         off = deviation[0], 2.0 * skew + deviation[1]
         possible_branches(ideal, arm.wiring, bounds, pose, off[0], off[1], angles, radii, faults)
-        if not are_all(arm.wiring, bounds, x, count, 0.5 * apart, angles, radii, faults):
+        if not are_all(arm.wiring, bounds, x, count, apart, angles, radii, faults):
             count = OPEN
     if count <= 0:
         return OPEN, spent

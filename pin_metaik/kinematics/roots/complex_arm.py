@@ -24,6 +24,7 @@ WORLD: Frame = (1 + 0j, 0j, 0j, 0j, 1 + 0j, 0j, 0j, 0j, 1 + 0j, 0j, 0j, 0j)
 LOST = math.inf  # step of Newton's that leads nowhere
 ARRIVED = 1e-7  # rad or lengths: last step at a root, where rounding keeps it from being shorter
 SAME = 1e-6  # rad or lengths: two roots nearer than this are one
+LEAST_PIVOT = 1e-8  # of the Jacobian at a root; one below it is a root of a curve of them
 
 
 class ComplexArm(NamedTuple):
@@ -226,6 +227,16 @@ def newton(
         if size < close:
             return first, last, k + 1
     return first, last, most
+
+
+@inline
+def is_regular(work: ComplexScratch) -> bool:
+    """Whether the Jacobian that ``solve_twists`` has taken apart, which leaves its inverse pivots, is not singular."""
+    regular = True
+    for k in range(6):
+        inverse = complex(work.twists[k, k])
+        regular = regular and inverse.real * inverse.real + inverse.imag * inverse.imag < LEAST_PIVOT**-2
+    return regular
 
 
 @inline

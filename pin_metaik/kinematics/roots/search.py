@@ -1,7 +1,8 @@
 """All roots for one pose: by elimination, and what that misses by continuation.
 
 That elimination misses some is seen by counting: there are as many roots as at any other pose. Two of one loop that
-share a joint value, and those whose values lie in singularities of the loop, are missed by that loop alone.
+share a joint value, and those whose values lie in singularities of the loop, are missed by that loop alone. Points of
+curves, which some singular poses have beside separate roots, are none of them.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from pin_metaik.kinematics.roots.complex_arm import (
     ComplexScratch,
     added,
     complex_scratch,
+    is_regular,
     newton,
 )
 from pin_metaik.kinematics.roots.continuation import PathScratch, follow_each, path_scratch
@@ -41,7 +43,7 @@ class Roots(NamedTuple):
     Attributes:
         target: (12,) the pose.
         points: (m, 6) roots.
-        nearly: (l, 6) where Newton's method came to no end, and which are nearly real.
+        nearly: (l, 6) where Newton's method came to no end, or to a singularity, and which are nearly real.
         x: (6,) one at work ...
         values: (6,) ... and by joint.
     """
@@ -105,7 +107,7 @@ def by_loop(
             continue
         _, last, more = newton(arm, roots.target, x, STEPS, EXACT, work)
         spent += more
-        if last < ARRIVED:
+        if last < ARRIVED and is_regular(work):
             found = added_with_conjugate(arm, x, roots, found)
         elif nearly_real(x):
             near = added(arm, x, roots.nearly, near, APART)
@@ -122,10 +124,14 @@ def by_paths(
     found: int,
     near: int,
     path: PathScratch,
+    most: int,
     work: ComplexScratch,
 ) -> tuple[int, int, int]:
-    """The same for the ends of paths from the pose ``start``, where ``ends`` (k, 6) are; they are moved."""
-    spent = follow_each(arm, start, roots.target, ends, arrived, path, work)
+    """The same for the ends of paths from the pose ``start``, where ``ends`` (k, 6) are; they are moved.
+
+    Paths end early where they take more than ``most`` evaluations together.
+    """
+    spent = follow_each(arm, start, roots.target, ends, arrived, path, most, work)
     x = roots.x
     for k in range(ends.shape[0]):
         for c in range(6):
@@ -139,7 +145,7 @@ def by_paths(
 
 @jit(
     "UniTuple(i8, 3)(f8[:,::1], i8[:,::1], f8[::1], i8[::1], f8[::1], i8[::1], c16[:,::1], c16[:,:,::1], i8,"
-    " c16[:,::1], c16[:,::1])"
+    " i8, c16[:,::1], c16[:,::1])"
 )
 def find_roots(
     joints: Floats,
@@ -151,6 +157,7 @@ def find_roots(
     starts: Complexes,
     known: Complexes,
     degree: int,
+    most: int,
     points: Complexes,
     nearly: Complexes,
 ) -> tuple[int, int, int]:
@@ -166,8 +173,9 @@ def find_roots(
         starts: (w, 12) poses to follow paths from after that, until all are found.
         known: (w, k, 6) their roots, as far as known.
         degree: How many there can be; the search ends with so many.
+        most: Evaluations that it may take.
         points: (m, 6) gets the roots.
-        nearly: (m, 6) gets what may be a double root, and is nearly real.
+        nearly: (m, 6) gets what may be a double root, or one of a curve, and is nearly real.
 
     Returns:
         How many roots there are, how many that may be double, and evaluations.
@@ -177,13 +185,15 @@ def find_roots(
     ends, arrived = np.empty(known.shape[1:], np.complex128), np.empty(known.shape[1], np.int64)
     found = near = spent = 0
     for number in loops:
+        if spent + ROOTS * STEPS > most:
+            return found, near, spent
         found, near, more = by_loop(arm, target, number, roots, found, near, loop, work)
         spent += more
         if found >= degree:
             return found, near, spent
     for w in range(starts.shape[0]):
         ends[:] = known[w]
-        found, near, more = by_paths(arm, starts[w], ends, arrived, roots, found, near, path, work)
+        found, near, more = by_paths(arm, starts[w], ends, arrived, roots, found, near, path, most - spent, work)
         spent += more
         if found >= degree:
             break
