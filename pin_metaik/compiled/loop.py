@@ -22,7 +22,7 @@ OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 # Sums may be taken in another order and a b + c be rounded once; infinities and NaN keep their meaning.
 LOOSE = {"contract", "reassoc", "nsz", "arcp"}
 
-WAIT = 3.0  # s; reading machine code from the cache takes a tenth of it
+WAIT = 3.0  # s
 NOTICE = (
     "pin_metaik: compiling inner loops for this machine, once; this takes ten to sixty seconds "
     "(`pin-metaik warm` compiles all of them ahead) ..."
@@ -86,7 +86,9 @@ class Loop:
         return cast(Callable[..., Any], loop)
 
     def announced(self, without: bool = False) -> Callable[..., Any]:
-        """The same, with a word if it takes long."""
+        """The same, with a word if it is compiled and that takes long."""
+        if self.machine_code.has(self.signatures[without]):  # to read it takes long on a busy machine only
+            return self.compiled(without)
         notice = Timer(WAIT, _tell)
         notice.daemon = True
         notice.start()
