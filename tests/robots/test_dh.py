@@ -67,7 +67,7 @@ def test_a_configuration_of_the_wrong_length_or_not_finite_is_refused(q):
         ({"lower": 2, "upper": 1}, "lower 2 is above upper 1"),
         ({"upper": np.inf}, "are not finite"),
         ({"type": "continuous"}, "has no limits"),
-        ({"type": "helical"}, "none of revolute, continuous, prismatic"),
+        ({"type": "helical"}, "not one of revolute, continuous, prismatic"),
         ({"velocity": 0}, "velocity = 0 is not above zero"),
         ({"effort": -1}, "effort = -1 is not above zero"),
     ],
@@ -81,7 +81,7 @@ def test_a_row_that_makes_no_sense_says_which_number(settings, message):
     ("settings", "message"),
     [
         ({"rows": ()}, "at least one joint"),
-        ({"convention": "hybrid"}, "none of standard, modified"),
+        ({"convention": "hybrid"}, "not one of standard, modified"),
         ({"name": " "}, "is not a name"),
         ({"rows": (DHRow(name="a\n"),)}, "is not a name"),
         ({"rows": (DHRow(name="j"), DHRow(), DHRow(name="j"))}, "joints 1 and 3 are both named 'j'"),
