@@ -3,9 +3,9 @@
     python benchmarks/ik_complete.py [six peers seven] [--arms ur5 ...] [--random 500] [--descents 5000] ...
 
 Writes the sections named, default all, into the page, and leaves the others as they are; each says by which command it
-was measured, when and on what machine. The truth is the
-union of all solvers and of random descents, each judged by Pinocchio. Peers are installed by ``pip install
-pin-metaik[branches]``; one that is not installed, or needs minutes to derive an arm's equations, is left out.
+was measured, when and on what machine. The truth is the union of all solvers and of random descents, each judged by
+Pinocchio. Peers are installed by ``pip install pin-metaik[branches]``; one that is not installed, or needs minutes to
+derive an arm's equations, is left out.
 """
 
 from __future__ import annotations
