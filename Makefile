@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 
-.PHONY: demo test lint tests quick soak urdf docs wheel check-release clean
+.PHONY: demo test lint tests quick soak urdf docs wheel check-release lock clean
 
 demo: $(VENV)/installed
 	$(BIN)/pin-metaik demo
@@ -16,10 +16,13 @@ lint: $(VENV)/developed
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
+# Every loop is compiled first, on all cores: or each of the tests' processes would compile what another has begun.
 tests: $(VENV)/developed
+	$(BIN)/pin-metaik warm
 	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
 quick: $(VENV)/developed
+	$(BIN)/pin-metaik warm
 	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not slow"
 
 # Hours: what the tests ask a few times, asked until nothing is left to find. Pages in benchmarks/ say what came of it.
@@ -33,10 +36,11 @@ soak: $(VENV)/developed
 urdf: $(VENV)/installed
 	$(BIN)/pin-metaik urdf --all
 
-# The site, in build/docs: every example is run, warnings are errors, internal links and pictures are checked.
+# The site, in build/docs: every example is run, warnings are errors, internal links are checked, pictures drawn again.
 docs: $(VENV)/documented
 	$(BIN)/python -m sphinx -c docs -b html --fail-on-warning --keep-going --quiet . build/docs
 	$(BIN)/python docs/links.py build/docs
+	$(BIN)/python docs/pictures.py --check
 	@echo "open build/docs/index.html"
 
 # The sdist, and a wheel for this platform and this Python with machine code in it.
@@ -48,6 +52,13 @@ wheel: $(VENV)/developed
 check-release: wheel
 	$(BIN)/python -m twine check --strict dist/*
 	$(BIN)/python .github/check_wheel.py dist/*.whl
+
+# The versions that CI installs, of everything, for each Python and system: written anew to have newer ones.
+lock:
+	$(PYTHON) -m venv build/lock
+	build/lock/bin/python -m pip install --quiet uv
+	build/lock/bin/uv pip compile --quiet --universal --python-version 3.11 --extra dev --no-annotate \
+		--custom-compile-command "make lock" --upgrade --output-file .github/constraints.txt pyproject.toml
 
 clean:
 	rm -rf $(VENV) dist build .mypy_cache .ruff_cache .pytest_cache

@@ -18,15 +18,15 @@ from tempfile import TemporaryDirectory
 
 # Run with the unpacked wheel on the path: its sources' digest is the stamp of the code.
 COMPILE = """
-import os, sys
-from functools import partial
-from pathlib import Path
-from pin_metaik.compiled import ahead, on_disk
+import sys
+from pin_metaik.compiled import LOOPS, ahead
 if __name__ == "__main__":
-    loops, missing = ahead.versions()
+    versions, missing = ahead.versions()
     sys.exit("\\n".join(missing)) if missing else None
-    for done, loop in enumerate(ahead.each(partial(ahead.Version.ship, folder=on_disk.SHIPPED), loops), 1):
-        print(f"{done:3d} of {len(loops)}: {loop.module}.{loop.name}", flush=True)
+    for done, loop in enumerate(ahead.each(ahead.Version.compile, versions), 1):
+        print(f"{done:3d} of {len(versions)}: {loop.module}.{loop.name}", flush=True)
+    for loop in LOOPS.values():
+        loop.machine_code.ship()
 """
 # Of Pinocchio's own wheels; machine code calls nothing but what numba finds for it at run time.
 SYSTEMS = {"Linux": "manylinux_2_28", "Darwin": "macosx_11_0"}
@@ -53,7 +53,7 @@ def fill(unpacked: Path, folder: Path) -> None:
     """Compile every loop of an unpacked wheel for the baseline of this platform's processors."""
     program = folder / "compile.py"
     program.write_text(COMPILE)
-    here = {"PYTHONPATH": str(unpacked), "NUMBA_CACHE_DIR": str(folder / "parts"), "PYTHONDONTWRITEBYTECODE": "1"}
+    here = {"PYTHONPATH": str(unpacked), "NUMBA_CACHE_DIR": str(folder / "code"), "PYTHONDONTWRITEBYTECODE": "1"}
     find = "from pin_metaik.compiled.baseline import baseline; print(baseline().name)"
     found = subprocess.run(
         [sys.executable, "-c", find], check=True, capture_output=True, text=True, env={**os.environ, **here}

@@ -42,16 +42,16 @@ BUDGETS = (50, 200, 50_000)
 READING = """
 ## Reading
 
-- Plain rejection solves these scenes, too, given the evaluations: a descent costs some ten microseconds, and solutions
-  differ enough that some dozens of random ones hold a free one. What our search brings is fewer evaluations: because it
-  starts from the sample table and checks distinct solutions only, and, where a target leaves freedom, because it pushes
-  solutions out of collision. In time the two are alike, as a push costs milliseconds.
-- On their own, seeds cost two orders of magnitude more time than other solutions, as each of their evaluations asks
-  coal. Here they bring nothing; they come last, for targets that chance and pushes do not meet.
-- Maxima of several milliseconds are the machine's other users; evaluations are reproducible.
-- A target that holds the gripper in an obstacle is told after one solution; a non-redundant arm gives up when no new
-  solution appears; a redundant one that finds nothing spends its budget: 50,000 evaluations, about a second on the
-  Panda.
+- Plain rejection solves these scenes, too, given enough evaluations: a descent takes some ten microseconds, and of some
+  dozens of random solutions one is free. Our search needs fewer evaluations, because it starts from the sample table
+  and checks distinct solutions only, and because it pushes solutions out of collision where a target leaves freedom. In
+  time the two are alike, as a push takes milliseconds.
+- On their own, seeds take a hundred times as long as other solutions, because each of their evaluations calls coal.
+  Here they find nothing more; they are tried last, for targets that neither random starts nor pushes solve.
+- Maxima of several milliseconds are due to other work on the machine; evaluations are reproducible.
+- A target that puts the gripper into an obstacle is reported after one solution; on a non-redundant arm the search ends
+  when no new solution appears; on a redundant one that finds nothing it spends its budget: 50,000 evaluations, about a
+  second on the Panda.
 """
 
 Floats = NDArray[np.float64]
@@ -204,15 +204,16 @@ def means(options: argparse.Namespace) -> list[str]:
     """What each means of finding a free solution brings on its own."""
     lines = [
         "",
-        "## What each means brings",
+        "## Each method on its own",
         "",
-        "The Panda's targets whose first solution collides, each means on its own: free solutions found, evaluations "
+        "The Panda's targets whose first solution collides, with each method on its own: free "
+        "solutions found, evaluations "
         "and time spent a target. *others*: distinct solutions from the atlas and random starts, 500 evaluations at "
         "most. *push*: quadratic programs from the first solution. *seeds*: one round of MTDE on distance from the "
         "target plus depth, 1,000 evaluations, its elite refined and pushed. *rejection*: random starts, 500 "
         "evaluations at most.",
         "",
-        "| scene | target | targets | means | found | evaluations | ms |",
+        "| scene | target | targets | method | found | evaluations | ms |",
         "|---|---|---|---|---|---|---|",
     ]
     for scene, kind in product(scene_names() if "panda" in options.robots else (), KINDS):

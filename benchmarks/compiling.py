@@ -1,9 +1,10 @@
 """What compiling costs: by loop, by phase, by kind of first solve; and the baseline against this processor's own.
 
-    python benchmarks/compiling.py --out docs/compiling.md
+    python benchmarks/compiling.py --before OTHER_CHECKOUT --out docs/compiling.md
 
 writes its tables between the two marks in that file. Seconds are of processor time, so that other work on the machine
-does not count, or not much; speeds are ratios of the same blocks of targets, solved by turns in two processes.
+does not count, or not much; what another checkout takes is measured beside this one's, in the same minutes. Speeds are
+ratios of the same blocks of targets, solved by turns in two processes.
 """
 
 from __future__ import annotations
@@ -117,21 +118,15 @@ for line in sys.stdin:
 class Place:
     """A copy of the package, without machine code, and a folder for what is compiled of it."""
 
-    def __init__(self, folder: Path, **environment: str) -> None:
-        shutil.copytree(PACKAGE, folder / "pin_metaik", ignore=shutil.ignore_patterns("__pycache__", "machine_code"))
+    def __init__(self, folder: Path, package: Path = PACKAGE, processor: str = "") -> None:
+        shutil.copytree(package, folder / "pin_metaik", ignore=shutil.ignore_patterns("__pycache__", "machine_code"))
         self.folder = folder
-        self.environment = {**os.environ, "PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": str(folder), **environment}
+        target = {"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": ""} if processor else {}
+        self.environment = {**os.environ, "PYTHONPATH": str(folder), "NUMBA_CACHE_DIR": str(folder), **target}
 
     def lines(self, program: str) -> list[Any]:
         """What a program prints, a JSON value a line."""
-        done = subprocess.run(
-            [sys.executable, self._file(program)],
-            env=self.environment,
-            stdout=subprocess.PIPE,
-            text=True,
-            check=True,
-        )
-        return [json.loads(line) for line in done.stdout.splitlines()]
+        return said(self.started(program))
 
     def _file(self, program: str) -> Path:
         path = self.folder / "program.py"
@@ -139,7 +134,7 @@ class Place:
         return path
 
     def started(self, program: str) -> subprocess.Popen[str]:
-        """A program that answers lines by lines."""
+        """A program that was begun; it may answer lines by lines."""
         return subprocess.Popen(
             [sys.executable, self._file(program)],
             env=self.environment,
@@ -147,6 +142,14 @@ class Place:
             stdout=subprocess.PIPE,
             text=True,
         )
+
+
+def said(process: subprocess.Popen[str]) -> list[Any]:
+    """What a program printed when it is done, a JSON value a line."""
+    printed, _ = process.communicate()
+    if process.returncode:
+        raise SystemExit(process.returncode)
+    return [json.loads(line) for line in printed.splitlines()]
 
 
 def asked(process: subprocess.Popen[str]) -> dict[str, Any]:
@@ -176,17 +179,47 @@ def label(module: str, name: str, without: bool) -> str:
     return f"{module.removeprefix('pin_metaik.')}.{name}{', without' if without else ''}"
 
 
-def measured(folder: Path, baseline: str) -> str:
-    own = Place(folder / "own")
-    other = Place(folder / "baseline", NUMBA_CPU_NAME=baseline, NUMBA_CPU_FEATURES="")
-    *loops, phases = own.lines(LOOPS)
-    seconds = {label(*loop): time for *loop, time in loops}
-    kinds = {kind: [label(*loop) for loop in used] for kind, used in own.lines(KINDS)}
+def phases(runs: list[list[Any]], loops: list[dict[str, float]]) -> list[str]:
+    """Rows of seconds by phase, a column for each run."""
+    spent = [phases for *_, phases in runs]
+    rows = [(phase, [some.get(phase, 0.0) for some in spent]) for phase in dict.fromkeys(p for s in spent for p in s)]
+    rows = [(phase, times) for phase, times in rows if max(times) > 0.01 * sum(loops[-1].values())]
+    rows = sorted(rows, key=lambda row: -row[1][-1])
+    both = [loop for loop in loops[-1] if all(loop in some for some in loops)]
+    rows += [
+        (f"**all {len(both)} loops that there are in each**", [sum(some[loop] for loop in both) for some in loops])
+    ]
+    return [f"| {phase} | {' | '.join(f'{time:.1f}' for time in times)} |" for phase, times in rows]
+
+
+def processor() -> str:
     found = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
-    cpu = found[1] if found else platform.machine()
+    return found[1] if found else platform.machine()
+
+
+def commit(checkout: Path) -> str:
+    asked = ["git", "-C", str(checkout), "rev-parse", "--short", "HEAD"]
+    return subprocess.run(asked, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def measured(folder: Path, baseline: str, before: Path | None) -> str:
+    own, other = Place(folder / "own"), Place(folder / "baseline", processor=baseline)
+    places = [other] if before is None else [Place(folder / "before", before / "pin_metaik", baseline), other]
+    running = [place.started(LOOPS) for place in places]  # at once, so that what slows one slows the other
+    runs = [said(process) for process in running]
+    names = ["s"] if before is None else [f"s in {commit(before)}", "s now"]
+    return page(names, runs, other.lines(KINDS), baseline, speeds(own, other))
+
+
+def page(names: list[str], runs: list[list[Any]], firsts: list[Any], baseline: str, speed: list[str]) -> str:
+    """The tables: of the last run, and of its phases beside those of the one before."""
+    by_loop = [{label(*loop): time for *loop, time in loops} for *loops, _ in runs]
+    seconds = by_loop[-1]
+    kinds = {kind: [label(*loop) for loop in used] for kind, used in firsts}
     lines = [
-        f"`python {' '.join(sys.argv)}`, {date.today()}, {cpu} with {os.cpu_count()} cores, Python "
-        f"{platform.python_version()}.",
+        f"`python benchmarks/compiling.py --before CHECKOUT --out docs/compiling.md`, {date.today()}, {processor()} "
+        f"with {os.cpu_count()} cores, Python {platform.python_version()}. Seconds of processor time "
+        f"in one process; the code is for {baseline}.",
         "",
         "| the first solve in a process with an empty cache | loops that it needs, and no kind above did | s |",
         "|---|---|---|",
@@ -200,15 +233,13 @@ def measured(folder: Path, baseline: str) -> str:
     lines += ["", "| loop | s |", "|---|---|"]
     lines += [f"| `{loop}` | {time:.1f} |" for loop, time in sorted(seconds.items(), key=lambda item: -item[1])]
     lines += [f"| **all {len(seconds)}** | **{sum(seconds.values()):.0f}** |", ""]
-    lines += ["| phase of it, if a hundredth or more | s |", "|---|---|"]
-    long = [(phase, time) for phase, time in phases.items() if time > 0.01 * sum(seconds.values())]
-    lines += [f"| {phase} | {time:.1f} |" for phase, time in sorted(long, key=lambda item: -item[1])]
-    lines += [""]
+    lines += [f"| phase, of a hundredth or more | {' | '.join(names)} |", f"|---{'|---' * len(names)}|"]
+    lines += [*phases(runs, by_loop), ""]
     lines += [
         f"| `solve_ik`, {2000 * ROUNDS} random poses | time with code for {baseline}, over that with this processor's "
         "own | answers equal to the last bit | largest difference of a joint, rad |",
         "|---|---|---|---|",
-        *speeds(own, other),
+        *speed,
     ]
     return "\n".join(lines) + "\n"
 
@@ -217,11 +248,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--out", type=Path, required=True, help="a file with the two marks")
     parser.add_argument("--baseline", default="x86-64-v3", help="LLVM's name of a processor")
+    parser.add_argument("--before", type=Path, help="a checkout to compare with")
     wanted = parser.parse_args()
     before, _, rest = wanted.out.read_text().partition(BEGIN)
     after = rest.partition(END)[2]
     with tempfile.TemporaryDirectory() as folder:
-        wanted.out.write_text(before + BEGIN + measured(Path(folder), wanted.baseline) + END + after)
+        wanted.out.write_text(before + BEGIN + measured(Path(folder), wanted.baseline, wanted.before) + END + after)
 
 
 if __name__ == "__main__":

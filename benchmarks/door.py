@@ -354,14 +354,14 @@ def page(todo: list[Call], done: list[Knock], command: str) -> Iterator[str]:
     hangs = sum("hangs" in fault.error for fault in faults)
     seconds = sorted(knock.seconds for knock in done)
     middle = seconds[len(seconds) // 2]
-    yield "# Odd arguments at every public door"
+    yield "# Odd arguments to every public function"
     yield f"`{command}`, {datetime.date.today()}, {machine}."
     yield (
         f"{len(todo):,} calls of {len(doors())} public functions, constructors and methods with odd arguments: "
         f"**{len(faults)} exceptions outside the family of `MetaIKError`, {hangs} of them hangs** (longer than "
         f"{LATE:g} s). The longest call took {1e3 * seconds[-1]:.0f} ms, the median {1e3 * middle:.2f} ms."
     )
-    table = ["| module | doors | calls | results | refused | faults |", "|---|---|---|---|---|---|"]
+    table = ["| module | functions | calls | results | refused | faults |", "|---|---|---|---|---|---|"]
     by_module: dict[str, list[int]] = {}
     for i, (door, _) in enumerate(todo):
         by_module.setdefault(door.name.partition(".")[0], []).append(i)

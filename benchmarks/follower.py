@@ -272,17 +272,18 @@ def main() -> None:
         "",
         "## The same targets as pink",
         "",
-        "Both are given where they are and a target, once a tick. Pink has a frame task and limits of configuration "
-        "and speed, in the second row of each also of acceleration; where it finds no speed that keeps them it stands. "
-        "Errors are the tip's distance from the target of the tick, by Pinocchio; for jumps and targets out of reach "
-        "they are mostly what nobody can help. *outside*: beyond a joint's limit.",
+        "In every tick both are given their configuration and a target. Pink has a frame task and "
+        "limits of configuration and speed, in the second row of each also of acceleration; where it finds no speed "
+        "within them it does not move. "
+        "Errors are the tip's distance from the target of the tick, by Pinocchio; for jumps and "
+        "targets out of reach they are mostly unavoidable. *outside*: beyond a joint's limit.",
         "",
         compared(),
         "",
         "## Among obstacles",
         "",
         "Panda, a random target every 300 ticks, reachable or not. Five configurations of every tick are checked on "
-        "the original geometry. *held*: ticks in which bodies that are near slow the arm down or hold it. "
+        "the original geometry. *held*: ticks in which nearby bodies slow the arm down or stop it. "
         f"Times of a tick are the least of {RUNS} runs of the same ticks.",
         "",
         table(

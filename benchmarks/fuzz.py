@@ -1,12 +1,13 @@
 """Odd files, and odd command lines, for everything that reads: a result or an error of ours, and nothing else.
 
-    python benchmarks/fuzz.py [--inputs 100000] [--slow 10000] [--seed 0] [--only NAME] [--kept FILE] [--out PAGE]
+    python benchmarks/fuzz.py [--inputs 100000] [--slow 10000] [--seed 0] [--minutes M] [--only NAME] [--kept FILE]
 
-Good files are changed as trees and as bytes (see fuzz_inputs.py), and read in processes that can die. A fault is an
-exception outside the family of ``MetaIKError``, the end of the process, a call that takes longer than 5 s, and memory
-above 1 GiB beyond what the process has when it begins.
+Good files are changed as trees and as bytes (see fuzz_inputs.py), and read in processes that can die, thousands in one
+of them. A fault is an exception outside the family of ``MetaIKError``, the end of the process, a call that takes longer
+than 5 s, and memory above 1 GiB beyond what the process has when it begins.
 
-With ``--kept`` each reader is written to a file when it is done, and not done again while the sources are the same.
+All readers go on together, part by part. With ``--kept`` each part is written to a file when it is done, and not done
+again while the sources are the same; with ``--minutes`` no part begins later, and the page says what was done by then.
 """
 
 from __future__ import annotations
@@ -14,8 +15,10 @@ from __future__ import annotations
 import argparse
 import contextlib
 import json
+import math
 import os
 import tempfile
+import time
 import traceback
 import warnings
 from collections import Counter
@@ -35,7 +38,8 @@ import pin_metaik as mik
 LATE = 5.0  # s of processor time; a call that takes longer hangs
 SILENT = 120.0  # s after which a call that nothing is heard of is ended
 ROOM = 1 << 30  # bytes that reading may take
-SHARE = 2_000  # inputs that one child reads at most
+SHARE = 2_000  # inputs that are read in one folder, in one child if none ends it
+IN_MEMORY = Path("/dev/shm")  # where folders are made, if it is there: writing takes longer than reading
 LONGEST = 2_000  # characters of a message
 
 
@@ -57,6 +61,11 @@ class Counts:
     faults: dict[str, int] = field(default_factory=dict)
     longest: float = 0.0
 
+    def __add__(self, other: Counts) -> Counts:
+        faults = self.faults | {what: self.faults.get(what, 0) + count for what, count in other.faults.items()}
+        read, refused = self.read + other.read, self.refused + other.refused
+        return Counts(self.inputs + other.inputs, read, refused, faults, max(self.longest, other.longest))
+
 
 Outcome = tuple[str, float]
 """What came of an input, "read", "refused" or a fault in words, and the time it took, s."""
@@ -65,28 +74,26 @@ Outcome = tuple[str, float]
 def fuzz(reader: Reader, numbers: range) -> Counts:
     """Let a reader read its odd inputs of these numbers."""
     counts, faults, first = Counts(), Counter[str](), dict[str, int]()
-    for start in range(numbers.start, numbers.stop, SHARE):
-        part = range(start, min(start + SHARE, numbers.stop))
-        with tempfile.TemporaryDirectory() as folder:
-            reader.beside(Path(folder))
-            path = Path(folder, reader.file)
-            outcomes = apart(
-                len(part),
-                lambda i, path=path, part=part: _outcome(reader, path, part[i]),  # type: ignore[misc]
-                lambda _, how: (how, 0.0),
-                SILENT,
-                ROOM,
-            )
-        for number, (what, seconds) in zip(part, outcomes, strict=True):
-            counts.inputs += 1
-            counts.longest = max(counts.longest, seconds)
-            if what == "read":
-                counts.read += 1
-            elif what == "refused":
-                counts.refused += 1
-            else:
-                faults[what] += 1
-                first.setdefault(what, number)
+    with tempfile.TemporaryDirectory(dir=IN_MEMORY if IN_MEMORY.is_dir() else None) as folder:
+        reader.beside(Path(folder))
+        path = Path(folder, reader.file)
+        outcomes = apart(
+            len(numbers),
+            lambda i: _outcome(reader, path, numbers[i]),
+            lambda _, how: (how, 0.0),
+            SILENT,
+            ROOM,
+        )
+    for number, (what, seconds) in zip(numbers, outcomes, strict=True):
+        counts.inputs += 1
+        counts.longest = max(counts.longest, seconds)
+        if what == "read":
+            counts.read += 1
+        elif what == "refused":
+            counts.refused += 1
+        else:
+            faults[what] += 1
+            first.setdefault(what, number)
     counts.faults = {f"{what} (input {first[what]})": count for what, count in faults.most_common()}
     return counts
 
@@ -125,22 +132,29 @@ def _place(error: BaseException) -> str:
     return f"{Path(last.filename).name}:{last.lineno}"
 
 
-def all_counted(asked: dict[str, int], seed: int, kept: Path | None) -> dict[str, Counts]:
-    """Counts of each reader, less those that a file has already."""
-    of = sources()
+def all_counted(asked: dict[str, int], seed: int, minutes: float, kept: Path | None) -> dict[str, Counts]:
+    """Counts of each reader; parts that a file has already are not read again."""
+    of, ends, every = sources(), time.monotonic() + 60.0 * minutes, readers()
     lines = kept.read_text(encoding="utf-8").splitlines() if kept is not None and kept.exists() else []
-    known = {
-        (name, count, first): Counts(**counts) for by, name, count, first, counts in map(json.loads, lines) if by == of
-    }
-    every = readers()
-    for name, count in track(asked.items(), "readers", transient=True):
-        if (name, count, seed) not in known:
-            known[name, count, seed] = counts = fuzz(every[name], range(seed, seed + count))
-            print(f"{name}: {counts}", flush=True)
+    known = {tuple(part): Counts(**counts) for by, part, counts in map(json.loads, lines) if by == of}
+    parts = [
+        (name, seed + first, min(SHARE, count - first))
+        for name, count in asked.items()
+        for first in range(0, count, SHARE)
+    ]
+    total = {name: Counts() for name in asked}
+    for part in track(sorted(parts, key=lambda part: part[1]), "parts", transient=True):
+        name, first, count = part
+        if part not in known:
+            if time.monotonic() > ends:
+                continue
+            known[part] = fuzz(every[name], range(first, first + count))
+            print(f"{part}: {known[part]}", flush=True)
             if kept is not None:
                 with kept.open("a", encoding="utf-8") as file:
-                    file.write(json.dumps([of, name, count, seed, asdict(counts)]) + "\n")
-    return {name: known[name, count, seed] for name, count in asked.items()}
+                    file.write(json.dumps([of, part, asdict(known[part])]) + "\n")
+        total[name] += known[part]
+    return {name: counts for name, counts in total.items() if counts.inputs}
 
 
 def page(counts: dict[str, Counts]) -> Iterator[str]:
@@ -170,8 +184,9 @@ def main() -> None:
     parser.add_argument("--inputs", type=int, default=100_000, help="of each reader that takes a millisecond or so")
     parser.add_argument("--slow", type=int, default=10_000, help="of each other one")
     parser.add_argument("--seed", type=int, default=0, help="number of the first input")
+    parser.add_argument("--minutes", type=float, default=math.inf, help="by the clock, after which no part begins")
     parser.add_argument("--only", default="", help="readers whose name holds this")
-    parser.add_argument("--kept", type=Path, help="file that finished readers are kept in")
+    parser.add_argument("--kept", type=Path, help="file that finished parts are kept in")
     parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".md"))
     given = parser.parse_args()
     out, kept = given.out.absolute(), given.kept and given.kept.absolute()
@@ -179,7 +194,7 @@ def main() -> None:
         asked = {
             name: given.inputs if one.fast else given.slow for name, one in readers().items() if given.only in name
         }
-        counts = all_counted(asked, given.seed, kept)
+        counts = all_counted(asked, given.seed, given.minutes, kept)
     out.write_text("\n\n".join(page(counts)) + "\n", encoding="utf-8")
 
 

@@ -11,10 +11,10 @@ import json
 import math
 import re
 import tomllib
-import xml.etree.ElementTree as ET
 from collections.abc import Callable, Sequence
 from random import Random
 from typing import Any
+from xml.dom import minidom
 from xml.sax.saxutils import escape, quoteattr
 
 Tree = Any
@@ -202,12 +202,13 @@ def as_xml(tree: Tree) -> str:
 
 
 def xml_tree(text: bytes) -> Tree:
-    """XML as a tree."""
+    """XML as a tree; prefixes stay in the names."""
 
-    def tree_of(element: ET.Element) -> Tree:
-        return [element.tag, dict(element.attrib), [*filter(None, [element.text]), *map(tree_of, element)]]
+    def tree_of(node: minidom.Node) -> Tree:
+        inside = [tree_of(one) if one.nodeType == one.ELEMENT_NODE else one.nodeValue for one in node.childNodes]
+        return [node.tagName, dict(node.attributes.items()), inside]
 
-    return tree_of(ET.fromstring(text))
+    return tree_of(minidom.parseString(text).documentElement)
 
 
 def toml_tree(text: bytes) -> Tree:

@@ -135,8 +135,8 @@ def wishes(options: argparse.Namespace) -> list[str]:
     """Wishes beside a pose."""
     count = max(1, options.count // 10)
     lines = [
-        f"{count:,} feasible poses a row. How far the robot is from what is wished for, on average: without the wish, "
-        "and with it. The pose is met in all of them, or it says so.",
+        f"{count:,} feasible poses a row. Mean distance from the wish, without it and with it. *Poses "
+        "met*: in how many of them the pose is met as well.",
         "",
         "| robot | wish | unit | without | with | poses met | median, ms |",
         "|---|---|---|---:|---:|---:|---:|",

@@ -4,8 +4,8 @@
 
 Writes the sections named, default all, into the page, and leaves the others as they are; each says by which command it
 was measured, when and on what machine. The truth is the union of all solvers and of random descents, each judged by
-Pinocchio. Peers are installed by ``pip install pin-metaik[branches]``; one that is not installed, or needs minutes to
-derive an arm's equations, is left out.
+Pinocchio. Peers are installed by ``pip install '.[branches]'``; one that is not installed, or needs minutes to derive
+an arm's equations, is left out of that arm's row.
 """
 
 from __future__ import annotations
@@ -154,10 +154,10 @@ def six(options: argparse.Namespace) -> Iterator[list[str]]:
         f"of {options.descents:,} random descents a pose, but for points of a curve (least singular value below "
         f"{ON_CURVE:g}); *missed*: of these, at random and near-singular poses, by `solve_ik_all` and by its peers "
         "where they take the arm; *wrong*: not accepted by Pinocchio. *Called complete*: share of the random poses, by "
-        "what proves it; *contradicted*: such sets that the union has more than. Times are medians of the random "
-        f"poses, the quickest of {CALLS} calls a pose, or the only one where that took longer than {1e3 * LONG:g} ms, "
-        "of the processor's time, which others on the machine take less from than from the clock's; solver by solver, "
-        "by turns: without boxes (`certify=False`), and with.",
+        "what proves it; *contradicted*: such sets of which the union has more solutions. Times are medians over the "
+        f"random poses of the quickest of {CALLS} calls, or of the only one where it took longer than {1e3 * LONG:g} "
+        "ms, in processor time, which depends less on the load of the machine than the clock; the solvers take turns: "
+        "without boxes (`certify=False`), and with.",
         "",
         "| arm | solutions | missed | wrong | called complete | contradicted | us | us with boxes | peers |",
         "|---|---:|---:|---:|---:|---:|---:|---:|---|",

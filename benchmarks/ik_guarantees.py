@@ -233,7 +233,7 @@ def main() -> None:
         return
     command = f"python benchmarks/ik_guarantees.py --poses {options.poses}" + " --eaik PYTHON" * bool(options.eaik)
     lines = [
-        "# What else was counted",
+        "# Further counts",
         "",
         f"`{command}`, {datetime.date.today()}, {os.cpu_count()}-core x86-64, shared. Met: 1e-5 m, 1e-5 rad and inside "
         f"the limits (to {SLACK:g}), by Pinocchio.",

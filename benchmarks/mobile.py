@@ -68,7 +68,7 @@ def exact_times() -> Iterator[str]:
             corners, edges = len(graph.border.corners), int(graph.mutual.sum()) // 2
             rows.append([count, radius, corners, edges, *(f"{ms:.1f}" for ms in (whole, again, k_best))])
     yield "## The exact planner\n"
-    yield "ms from the polygons to a proven path; for another query in the same world; for five alternatives.\n"
+    yield "ms from the polygons to a proved shortest path; another query in the same scene; five alternatives.\n"
     heading = ["polygons", "radius", "corners", "edges", "from polygons", "another query", "5 alternatives"]
     yield table(heading, rows)
 

@@ -52,8 +52,8 @@ def scenes() -> list[mobile.PathProblem]:
 def planners(runs: int) -> Iterator[str]:
     yield "## Planners\n"
     yield (
-        f"5,000 evaluations, {runs} runs; planners without chance run once. An evaluation is a path of a metaheuristic "
-        "over five via points, or a straight line that another planner tests: equal evaluations are no equal work. "
+        f"5,000 evaluations, {runs} runs; deterministic planners run once. An evaluation is a path of a metaheuristic "
+        "over five via points, or a straight line that another planner tests: equal evaluations are not equal work. "
         "Gaps to the shortest path are over the runs whose path is free by the exact test; times are from the free "
         "space on. The same table for scenes of one's own: `pin-metaik mobile compare SCENE...`.\n"
     )
@@ -61,7 +61,7 @@ def planners(runs: int) -> Iterator[str]:
 
 
 def budgets(runs: int) -> Iterator[str]:
-    yield "## More of it\n"
+    yield "## Larger budgets and finer grids\n"
     yield "ten_obstacles: median gap in percent, and of how many runs a path is free, by the budget of evaluations.\n"
     problem, methods = scenes()[0], ("rrt", "rrtstar", "informed", "prm", "ga", "pso")
     rows: list[list[object]] = []

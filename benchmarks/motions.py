@@ -53,7 +53,7 @@ def main() -> None:
         "## What a move costs",
         "",
         "Panda, `first_contact` and `clear_between` at the default resolution of 0.1 mm: median of "
-        f"{REPEATS} calls, ms. *parts*: configurations that were looked at.",
+        f"{REPEATS} calls, ms. *parts*: number of configurations checked.",
         "",
         "| move | answer | `first_contact`, ms | `clear_between`, ms | parts |",
         "|---|---|---:|---:|---:|",

@@ -189,7 +189,8 @@ def _with_followers(model: pin.Model, rnd: Random) -> pin.Model:
     for joint in range(2, model.njoints):
         kind = model.joints[joint]
         alike = [j for j in range(1, joint) if kind.nq == 1 and model.joints[j].shortname() == kind.shortname()]
-        if alike and "Helical" not in kind.shortname() and rnd.random() < 0.1:
+        drawn = alike and "Helical" not in kind.shortname() and rnd.random() < 0.1
+        if drawn and "Composite" not in kind.shortname():  # Pinocchio makes no follower of these
             chosen.append((joint, rnd.choice(alike)))
     leaders = {leader for _, leader in chosen}
     for joint, leader in reversed(chosen):  # from the last to the first, so that numbers stay what they are

@@ -47,7 +47,7 @@ def table(page: str) -> str:
     command, date, machine = re.search(r"^`(python \S+).*`, (\S+), (.*?), Python", page, re.MULTILINE).groups()  # type: ignore[union-attr]
     families = {family: rows_of(page, family) for family in FAMILIES}
     lines = [
-        "| solver (of ten arms it takes) | " + " | ".join(FAMILIES.values()) + " |",
+        "| solver (number of arms, if not ten) | " + " | ".join(FAMILIES.values()) + " |",
         "|---|---|---|---|",
     ]
     for key, name in NAMES.items():

@@ -8,6 +8,7 @@ Times of answers are from a frame of the target on the socket to the robot's new
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import platform
 import re
@@ -83,6 +84,17 @@ def measured(code: str) -> tuple[float, float, bool]:
     return float(clock), float(processor), imported == "True"
 
 
+def cut_off() -> str:
+    """Every page opened in Chromium, with server and browser in a network namespace that has loopback alone."""
+    child = f"ip link set lo up && exec {sys.executable} {Path(__file__).with_name('toolbox_offline.py')}"
+    done = subprocess.run(["unshare", "--net", "--map-root-user", "sh", "-c", child], capture_output=True, text=True)
+    if done.returncode:
+        return f"not run here: {(done.stderr.strip().splitlines() or ['no reason given'])[-1]}"
+    seen = json.loads(done.stdout.splitlines()[-1])
+    found = f"{len(seen['opened'])} pages answered, asked {', '.join(seen['asked'])}, {seen['faults']} faults"
+    return found + ("; there was a way out" if seen["reachable"] else "; no way out")
+
+
 def resident() -> float:
     """Memory of this process, MB."""
     return int(Path("/proc/self/statm").read_text().split()[1]) * PAGE / 1e6
@@ -128,6 +140,7 @@ def main(argv: list[str] | None = None) -> None:
     alone = measured("import pin_metaik")
     start = measured("from pin_metaik.gui import open_toolbox; box = open_toolbox(port=0)")
     extra, viser = size_of_extra()
+    offline = cut_off()
     with open_toolbox(port=0) as toolbox:
         clock, processor = time.perf_counter(), time.process_time()
         tab = SocketTab(toolbox.url)
@@ -158,6 +171,7 @@ def main(argv: list[str] | None = None) -> None:
         ("memory in the second half of it", f"{max(memory[half:]) - max(memory[:half]):+.1f} MB"),
         (f"{chosen.tabs} tabs more", f"{many[1]:.1f} s of the processor, {many[0]:.1f} s on the clock"),
         ("frame to answer among them, of the processor", in_ms([processor for _, processor in crowded])),
+        ("with the network cut off, in Chromium", offline),
         ("processes left when it is closed", f"{left} of {len(pids)}"),
     ]
     load = os.getloadavg()[0]

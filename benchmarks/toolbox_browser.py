@@ -64,11 +64,15 @@ class Page:
     def open(self, *folders: str) -> None:
         """Open folders of the panel that are closed."""
         for folder in folders:
-            self.page.get_by_text(folder, exact=True).last.click()
+            self._button(folder, "[aria-expanded]").last.click()
 
     def click(self, button: str) -> None:
         """Click a button."""
-        self.page.get_by_role("button", name=button, exact=True).first.click()
+        self._button(button, "button").first.click()
+
+    def _button(self, name: str, kind: str) -> Any:
+        """Buttons of a name that are of a kind: folders are opened by buttons, too, which may have a name of one."""
+        return self.page.get_by_role("button", name=name, exact=True).and_(self.page.locator(kind))
 
     def click_until(self, button: str, text: str) -> None:
         """Click a button until a text is there: a click is lost on a button that is just being made anew."""
@@ -90,7 +94,7 @@ class Page:
 
     def type(self, label: str, value: str) -> None:
         """Type into an input."""
-        box = self.page.get_by_label(label, exact=True).first
+        box = self.page.get_by_role("textbox", name=label, exact=True).first
         box.fill(value)
         box.press("Enter")
 

@@ -1,12 +1,12 @@
-"""How far one walks in the code to follow one call: Python calls, files entered, and changes of file.
+"""How many files a reader enters to follow one call: Python calls, files entered, and changes of file.
 
     python benchmarks/walks.py                                            # this tree, printed
     python benchmarks/walks.py --before TREE --out benchmarks/walks.md    # beside an earlier checkout, as a page
 
 Counted by ``sys.setprofile`` inside the package, one call each, after the same call has made all caches and compiled
-code warm. *calls* are calls of Python functions, comprehensions included; *rooms* are the files that these are in;
-*stays* is how often the next call is in another file than the one before, so that a room entered twice counts twice.
-*without doors* counts all three again without ``arguments.py``, which reads the arguments of public functions.
+code warm. *calls* are calls of Python functions, comprehensions included; *files* are the files that these are in;
+*changes* is how often the next call is in another file than the one before. *without reading arguments* counts all
+three again without ``arguments.py``, which reads the arguments of public functions.
 """
 
 from __future__ import annotations
@@ -157,7 +157,7 @@ def counts_of(tree: Path) -> dict[str, Count]:
 
 def table(before: dict[str, Count] | None, after: dict[str, Count]) -> Iterator[str]:
     """The counts as rows of Markdown."""
-    yield "| walk | calls | rooms | stays | without doors: calls | rooms | stays |"
+    yield "| call | calls | files | changes | without reading arguments: calls | files | changes |"
     yield "|---|---|---|---|---|---|---|"
     for name, now in after.items():
         was = now if before is None else before[name]
@@ -172,13 +172,13 @@ def page(before: dict[str, Count], after: dict[str, Count], command: str) -> str
     first = next(iter(after))
     return "\n".join(
         [
-            "# Walks through the code",
+            "# Calls followed through the code",
             "",
             f"`{command}`, {datetime.datetime.now(datetime.UTC):%Y-%m-%d}, {machine}.",
             "",
-            "Python calls inside the package in one call, the files that they are in (rooms), and how often the next",
-            "call is in another file than the one before (stays); caches and compiled code are warm. Before → after.",
-            "The later tree does more in some walks: public functions read their arguments (the last three columns",
+            "Python calls inside the package in one call, the files that they are in, and how often the next",
+            "call is in another file than the one before (changes); caches and compiled code are warm. Before → after.",
+            "The later tree does more in some calls: public functions read their arguments (the last three columns",
             "leave that out), answers come with proofs, files are searched for keys that mean nothing.",
             "",
             *table(before, after),

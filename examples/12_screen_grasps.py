@@ -91,7 +91,7 @@ def main() -> None:
         print(f"{name}: {count} grasps in {batch.seconds:.2f} s\n{reasons(batch)}\n")
         draw(figure.add_subplot(1, len(ROBOTS), i + 1, projection="3d"), world, batch)
     figure.savefig(picture, dpi=130)
-    print(f"{picture}: green can be done, red only in collision, blue is proved out of reach")
+    print(f"{picture}: green are reached, red only in collision, blue are proved out of reach")
 
 
 if __name__ == "__main__":

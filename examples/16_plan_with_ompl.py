@@ -29,7 +29,7 @@ def main() -> None:
     for q in goals:
         print("   ", world.first_contact(begin.q, q))
     if not installed():
-        print("a way round needs OMPL: pip install 'pin-metaik[ompl]'")
+        print("planning around it needs OMPL: pip install '.[ompl]' in the clone")
         return
 
     plan = plan_joint_move(chain, world, begin.q, goals.q)

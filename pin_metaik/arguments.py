@@ -1,9 +1,9 @@
-"""Arguments as their annotations promise them: read at the public doors, or refused with what would have worked.
+"""Arguments of public functions, converted to the types of their annotations, or refused with what would have worked.
 
-The types of a public function's arguments are written once, in its annotations. ``checked`` reads them: lists become
-the tuples and arrays that are annotated, texts become paths, and anything else is refused before any work begins.
-Ranges and shapes depend on more than one argument; they are checked by the function's own first lines, with ``array``
-below and the settings of ``optimize``.
+The types of a public function's arguments are written once, in its annotations. ``checked`` applies them: lists become
+the annotated tuples and arrays, strings become paths, and anything else is refused before any work begins. Ranges and
+shapes, which depend on more than one argument, are checked in the function's first lines, with ``array`` below and the
+checks of ``optimize.settings``.
 """
 
 from __future__ import annotations

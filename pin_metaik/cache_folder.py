@@ -1,4 +1,4 @@
-"""The folder in which this user's caches are kept between processes, if there can be one."""
+"""The folder of this user's caches, if it can be written."""
 
 from __future__ import annotations
 

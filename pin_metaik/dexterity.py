@@ -1,4 +1,4 @@
-"""Measures of a Jacobian: how well a mechanism can move where it stands."""
+"""Measures of a Jacobian: how well a mechanism can move at a configuration."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every error this package raises on purpose: one family, each with its values and what would have worked."""
+"""The errors of this package: one family, each with the values given and what would have worked."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def meant(name: str, known: Collection[str]) -> str:
 
 
 class MetaIKError(ValueError):
-    """A call that makes no sense. A target that cannot be reached is not one: that is a status of the result."""
+    """Base class of this package's errors: the call makes no sense. An unreachable target is a status, not an error."""
 
     def __init__(self, message: str = "") -> None:
         super().__init__(readable(str(message)))
@@ -87,7 +87,7 @@ class InvalidSetting(MetaIKError):
 
 
 class InvalidTarget(MetaIKError):
-    """A target that is not a pose: wrong shape, not finite, not orthonormal, or a tolerance below zero."""
+    """A target that is not valid: wrong shape, not finite, not orthonormal, or a tolerance that is not above zero."""
 
 
 class InvalidConfiguration(MetaIKError):
@@ -103,7 +103,7 @@ class InvalidModel(MetaIKError):
 
 
 class UnsupportedJoint(MetaIKError):
-    """A joint on the path with more than one degree of freedom, or of a kind no chain can hold."""
+    """A joint of a kind that a chain, or a check of a move, cannot handle."""
 
 
 class FrameNotFound(UnknownName):
@@ -122,15 +122,15 @@ class InvalidGeometry(MetaIKError):
 
 
 class Cancelled(MetaIKError):
-    """A watch ended work that has nothing to return before it is done."""
+    """A watch ended work that has no partial result to return."""
 
 
 class CannotExport(MetaIKError):
-    """An arm that cannot be written as code of its own, or a language that there is none for."""
+    """An arm that cannot be exported as standalone code, or a language for which there is no export."""
 
 
 class CannotWrite(MetaIKError):
-    """A file or a folder that is to be written, and cannot be."""
+    """A file or folder that cannot be written."""
 
 
 class MissingExtra(MetaIKError):

@@ -1,4 +1,4 @@
-"""Figures of matplotlib: whether there can be any, empty ones, and files of them."""
+"""Figures of matplotlib: whether it is installed, empty figures, and writing them to files."""
 
 from __future__ import annotations
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import csv
 import json
 from collections.abc import Callable, Collection, Mapping
 from decimal import Decimal
 from importlib.resources.abc import Traversable
+from io import StringIO
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile, is_zipfile
@@ -18,7 +20,26 @@ Error = type[MetaIKError]
 
 DEEPEST = 100  # values in each other
 LARGEST = 10**308  # whole numbers beyond it are none that a float holds
+LONGEST = 1 << 28  # bytes of a file, but of arrays
 HEAVIEST = 1 << 30  # bytes of the arrays in a file, unpacked
+
+
+def read_bytes(path: Path | Traversable, error: Error) -> bytes:
+    """The bytes of a file.
+
+    Args:
+        path: The file; ``~`` in front is the user's home.
+        error: What to raise if it is missing, or has more than a file of its kind ever has, or no end, as
+            ``/dev/zero``; made from one sentence.
+    """
+    try:
+        with (path.expanduser() if isinstance(path, Path) else path).open("rb") as file:
+            content: bytes = file.read(LONGEST + 1)
+    except (OSError, RuntimeError, ValueError) as reason:  # there is no home, or a null character
+        raise error(f"cannot read {path}: {getattr(reason, 'strerror', None) or reason}") from None
+    if len(content) > LONGEST:
+        raise error(f"cannot read {path}: it has more than {LONGEST >> 20} MiB")
+    return content
 
 
 def read_text(path: Path | Traversable, error: Error, kind: str = "text") -> str:
@@ -30,10 +51,8 @@ def read_text(path: Path | Traversable, error: Error, kind: str = "text") -> str
         kind: Kind of the file, for the message.
     """
     try:
-        return (path.expanduser() if isinstance(path, Path) else path).read_text(encoding="utf-8-sig")
-    except (OSError, RuntimeError) as reason:  # RuntimeError: there is no home
-        raise error(f"cannot read {path}: {getattr(reason, 'strerror', None) or reason}") from None
-    except ValueError as reason:
+        return StringIO(read_bytes(path, error).decode("utf-8-sig"), newline=None).read()
+    except UnicodeDecodeError as reason:
         raise error(f"{path} is not {kind}: it is not UTF-8 text: {reason}") from None
 
 
@@ -98,6 +117,19 @@ def _too_large(value: object) -> bool:
     return isinstance(value, int) and abs(value) > LARGEST
 
 
+def read_csv(path: Path, error: Error) -> list[list[str]]:
+    """The rows of a CSV file.
+
+    Args:
+        path: The file.
+        error: What to raise if it is missing or malformed; made from one sentence.
+    """
+    try:
+        return list(csv.reader(read_text(path, error, "CSV").splitlines(keepends=True)))
+    except csv.Error as reason:
+        raise error(f"{path} is not CSV: {reason}") from None
+
+
 def read_array(path: Path, error: Error, kind: str) -> np.ndarray:
     """The one array in a ``.npy`` file; arguments as of ``read_arrays``."""
     arrays = read_arrays(path, error, kind)
@@ -136,7 +168,7 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     content = dict(pairs)
     if len(content) < len(pairs):
         names = [name for name, _ in pairs]
-        raise ValueError(f"the key {next(name for name in names if names.count(name) > 1)!r} is there twice")
+        raise ValueError(f"the key {next(name for name in names if names.count(name) > 1)!r} occurs twice")
     return content
 
 

@@ -14,10 +14,10 @@ U = TypeVar("U")
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C, with what was found until then: for whoever wants it; to everybody else it is a ``KeyboardInterrupt``.
+    """A ``KeyboardInterrupt`` that carries the result found until then.
 
     Attributes:
-        result: The result of the call as if its search had ended there; it is marked as interrupted.
+        result: The result of the call as if its search had ended at that moment, marked as interrupted.
     """
 
     def __init__(self, result: object) -> None:
@@ -68,15 +68,15 @@ def deaf_children() -> Iterator[None]:
 
 
 class Pressed:
-    """Notes Ctrl-C while it is entered, and raises ``KeyboardInterrupt`` where one was swallowed.
+    """A context manager that notes Ctrl-C, and raises ``KeyboardInterrupt`` if the code inside has swallowed it.
 
-    Some code catches everything: a method of somebody else's, which would then give an answer that a clean run would
-    not, or a callback that C calls, whose exceptions Python drops. Signals come to the main thread: in another one this
-    does nothing.
+    Some code catches every exception: a user's method, which would then return another answer than in an uninterrupted
+    run, or a callback called from C, whose exceptions Python drops. Signals come to the main thread; in another thread
+    this does nothing.
 
     Attributes:
-        held: Whether the first Ctrl-C is only noted, for ``check`` to raise, because what runs must not be broken off.
-            A second one is handed on at once.
+        held: Whether the first Ctrl-C is only noted, for ``check`` to raise, because the work inside must not be
+            interrupted. A second one is raised at once.
     """
 
     def __init__(self, held: bool = False) -> None:

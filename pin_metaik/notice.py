@@ -1,4 +1,4 @@
-"""What takes more than a second says so, once: a line on stderr that names the work and, on a terminal, counts it."""
+"""Notices of work that takes more than a second: a line on stderr that names it and, on a terminal, counts steps."""
 
 from __future__ import annotations
 

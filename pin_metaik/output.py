@@ -1,4 +1,4 @@
-"""Output is looked for before the work begins: what cannot be written is told by name, not found out afterwards."""
+"""Output is checked before the work begins: a file that cannot be written is reported by name, not after the work."""
 
 from __future__ import annotations
 

@@ -1,19 +1,20 @@
 """Meshes in PLY (Turk, 1994), text or binary. coal's reader trusts the numbers of corners, and so ends the process.
 
-A header names elements and their properties; a row an element follows. A property is a number, or a list: its length
-and so many numbers.
+A header names elements and their properties; a row an element follows, in text a line. A property is a number, or a
+list: its length and so many numbers.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import islice, repeat
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pin_metaik.files import Error
+from pin_metaik.files import Error, read_bytes
 
 NAMES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"}
 NAMES |= {"float": "f4", "double": "f8"}
@@ -21,12 +22,13 @@ SIZES = {"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i
 TYPES = NAMES | SIZES | {"float32": "f4", "float64": "f8"}
 FORMS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 SUFFIX = ".ply"
+MAGIC = b"ply"
 CORNERS = ("vertex_indices", "vertex_index")
 END = b"end_header"
 
 Numbers = NDArray[np.float64]
 Take = Callable[[str, int], Numbers]
-"""The next so many numbers of a type."""
+"""The next so many numbers of a type, of the same row."""
 
 
 @dataclass(frozen=True)
@@ -46,10 +48,10 @@ class Element:
     count: int
     properties: tuple[Property, ...]
 
-    def rows(self, take: Take) -> list[dict[str, Numbers]]:
+    def rows(self, takes: Iterator[Take]) -> list[dict[str, Numbers]]:
         """The values of each of them, by property."""
         return [{p.name: take(p.kind, int(take(p.length, 1)[0]) if p.length else 1) for p in self.properties}
-                for _ in range(self.count)]  # fmt: skip
+                for take in islice(takes, self.count)]  # fmt: skip
 
 
 def read_ply(path: Path, error: Error) -> tuple[Numbers, NDArray[np.int64]]:
@@ -60,24 +62,27 @@ def read_ply(path: Path, error: Error) -> tuple[Numbers, NDArray[np.int64]]:
         error: What to raise if it is no such file, ends early, or has a corner that is none of its vertices.
     """
     try:
-        content = path.read_bytes()
+        content = read_bytes(path, error)
         form, elements, start = _header(content)
-        take = _binary(content[start:], FORMS[form]) if FORMS[form] else _text(content[start:])
+        takes = _binary(content[start:], FORMS[form]) if FORMS[form] else _text(content[start:])
         if sum(element.count for element in elements) > len(content):
             raise ValueError("it has not as many bytes as rows")
-        rows = {element.name: element.rows(take) for element in elements}
+        rows = {element.name: element.rows(takes) for element in elements}
+        next(takes, None)  # the last line, too, has no more numbers than it should
+        if any(len(rows[element.name]) < element.count for element in elements):
+            raise ValueError("it ends early")
         vertices = np.array([[row[axis][0] for axis in "xyz"] for row in rows["vertex"]]).reshape(-1, 3)
         faces = [next(row[name] for name in CORNERS if name in row) for row in rows["face"]]
-    except OSError as reason:
-        raise error(f"cannot read {path}: {reason.strerror}") from None
     except (KeyError, StopIteration):
-        raise error(f"{path} is no mesh in PLY: it lacks x, y, z, corners, or a type is unknown") from None
+        raise error(f"{path} is not a PLY mesh: it lacks x, y, z or triangles, or has an unknown type") from None
     except (ValueError, OverflowError) as reason:  # the latter of a length that is infinite
         raise error(f"{path} is no mesh in PLY: {reason}") from None
+    if any(len(face) < 3 for face in faces):  # coal's reader looks at the third corner of each
+        raise error(f"{path} has faces of fewer than three corners")
     parts = [(face[0], b, c) for face in faces for b, c in zip(face[1:-1], face[2:], strict=True)]
     corners = np.array(parts, dtype=float).reshape(-1, 3)
     if not ((corners >= 0.0) & (corners < len(vertices)) & (corners == np.floor(corners))).all():
-        raise error(f"{path} has triangles whose corners are none of its {len(vertices)} vertices")
+        raise error(f"{path} has triangles with indices outside its {len(vertices)} vertices")
     return vertices, corners.astype(np.int64)
 
 
@@ -85,7 +90,7 @@ def _header(content: bytes) -> tuple[str, list[Element], int]:
     """The form, the elements, and where their rows begin."""
     end = content.find(END)
     start = content.find(b"\n", end) + 1
-    if not content.startswith(b"ply") or end < 0 or start == 0:
+    if not content.startswith(MAGIC) or end < 0 or start == 0:
         raise ValueError("its header is not whole")
     form, elements = "", list[Element]()
     for line in content[:end].decode("latin-1").splitlines():
@@ -99,7 +104,7 @@ def _header(content: bytes) -> tuple[str, list[Element], int]:
             case ["property", kind, name] if elements:
                 _add(elements, Property(name, TYPES[kind]))
     if any(element.count < 0 or (element.count and not element.properties) for element in elements):
-        raise ValueError("an element has no properties, or a number below zero of rows")
+        raise ValueError("an element has no properties, or a negative number of rows")
     return form, elements, start
 
 
@@ -109,20 +114,23 @@ def _add(elements: list[Element], one: Property) -> None:
     elements[-1] = Element(last.name, last.count, (*last.properties, one))
 
 
-def _text(content: bytes) -> Take:
-    """What takes numbers from text."""
-    words, at = np.array(content.split(), dtype=float), 0
+def _text(content: bytes) -> Iterator[Take]:
+    """What takes numbers from each line of a text."""
+    for line in content.splitlines():
+        words, at = np.array(line.split(), dtype=float), 0
 
-    def take(_: str, count: int) -> Numbers:
-        nonlocal at
-        at += _fits(count, len(words) - at)
-        return np.asarray(words[at - count : at])
+        def take(_: str, count: int, words: Numbers = words) -> Numbers:
+            nonlocal at
+            at += _fits(count, len(words) - at)
+            return np.asarray(words[at - count : at])
 
-    return take
+        yield take
+        if at != len(words):
+            raise ValueError("a line has more numbers than its element")
 
 
-def _binary(content: bytes, order: str) -> Take:
-    """What takes numbers from bytes."""
+def _binary(content: bytes, order: str) -> Iterator[Take]:
+    """What takes numbers from bytes, which rows follow each other in."""
     at = 0
 
     def take(kind: str, count: int) -> Numbers:
@@ -131,11 +139,11 @@ def _binary(content: bytes, order: str) -> Take:
         at += size * _fits(count, (len(content) - at) // size)
         return np.frombuffer(content, order + kind, count, at - size * count).astype(float)
 
-    return take
+    return repeat(take)
 
 
 def _fits(count: int, room: int) -> int:
     """How many numbers to take, where so many are left."""
     if not 0 <= count <= room:
-        raise ValueError("it ends early")
+        raise ValueError("it ends early, or a line does")
     return count

@@ -1,4 +1,4 @@
-"""Warnings point at the line that called this package, however deep inside it is known what to say."""
+"""Warnings that point at the line which called this package, however deep inside they arise."""
 
 from __future__ import annotations
 

@@ -28,12 +28,25 @@ def read_toml(
         error: What to raise if it is missing or malformed; made from one sentence.
         number: What makes a number of the text of one that is not whole: ``Decimal`` loses nothing of it.
     """
-    text = read_text(path, error, "TOML")
+    return toml_values(read_text(path, error, "TOML"), path, error, number)
+
+
+def toml_values(
+    text: str, place: object, error: type[MetaIKError], number: Callable[[str], Any] = float
+) -> dict[str, Any]:
+    """The contents of a text in TOML.
+
+    Args:
+        text: The text.
+        place: Where it is.
+        error: What to raise if it is malformed; made from one sentence.
+        number: As of ``read_toml``.
+    """
     try:
         content = tomllib.loads(text, parse_float=number)
     except (ValueError, RecursionError) as reason:
-        raise error(f"{path} is not TOML: {reason}") from None
-    plain_values(content, len(text), path, error, "TOML")
+        raise error(f"{place} is not TOML: {reason}") from None
+    plain_values(content, len(text), place, error, "TOML")
     return content
 
 
@@ -64,7 +77,7 @@ class Table:
         """The unit that a text names."""
         name = self.text(key)
         if name not in known:
-            raise InvalidTable(f"{self.at(key)} is none of the units {', '.join(known)}")
+            raise InvalidTable(f"{self.at(key)} is not one of the units {', '.join(known)}")
         return known[name]
 
     def whole(self, key: str) -> int:

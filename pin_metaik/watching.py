@@ -1,4 +1,4 @@
-"""Long work tells how far it is, and ends when it is told to: for bars, pages, notebooks and robots."""
+"""Watches: callbacks that are told the progress of long work, and can end it."""
 
 from __future__ import annotations
 

@@ -50,7 +50,9 @@ def check_jobs(jobs: int) -> None:
         InvalidSetting: It is not.
     """
     if jobs == 0 or abs(jobs) > MOST_JOBS:
-        raise InvalidSetting(f"jobs is a number of processes, 1 to {MOST_JOBS:,}, or -1: one a core; got {jobs}")
+        raise InvalidSetting(
+            f"jobs is a number of processes, 1 to {MOST_JOBS:,}, or -1 for one on each core; got {jobs}"
+        )
 
 
 def worked(items: Sequence[WorkItem[T]], jobs: int, backend: Backend, scheduler: str | None) -> Iterator[T]:

@@ -24,7 +24,10 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session", autouse=True)
 def own_cache(tmp_path_factory: pytest.TempPathFactory) -> None:
-    os.environ["PIN_METAIK_CACHE"] = str(tmp_path_factory.mktemp("cache"))
+    """One for all workers, so that what is known of a robot's links is worked out once."""
+    folder = tmp_path_factory.getbasetemp()
+    folder = folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder
+    os.environ["PIN_METAIK_CACHE"] = str(folder / "cache")
 
 
 @pytest.fixture(scope="session")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import json
 import zipfile
@@ -10,16 +11,32 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 import pytest
+from apart import address_space, room
 from fuzz import elsewhere, fuzz
-from fuzz_readers import MJCF, OBJ, PLY, URDF, readers
+from fuzz_readers import readers
+from fuzz_seeds import DAE, MESHES, MESHES_MJCF, MJCF, OBJ, PLY, URDF
 
 import pin_metaik as mik
 from pin_metaik import collision, learn, mobile
+from pin_metaik.cli.goals import read_goals
+from pin_metaik.cli.reachable import read_targets
 from pin_metaik.collision.scene import read_points
 from pin_metaik.compare import read_results
 from pin_metaik.compare.folder.manifest import Manifest
 from pin_metaik.compare.folder.store import ROWS, Appender, read_rows
-from pin_metaik.errors import MOST, InvalidGeometry, InvalidModel, InvalidSetting, InvalidTable, MetaIKError
+from pin_metaik.errors import (
+    MOST,
+    InvalidGeometry,
+    InvalidModel,
+    InvalidSetting,
+    InvalidTable,
+    InvalidTarget,
+    MetaIKError,
+)
+from pin_metaik.gui.look.pieces import pieces_of
+from pin_metaik.mobile.motion.trajectory import load_trajectory
+from pin_metaik.mobile.world.images import read_image
+from pin_metaik.stewart import read_trajectory
 from tests.compare.suites import SMALL
 
 INPUTS = 25  # of each reader; hundreds of thousands in the benchmark
@@ -121,11 +138,53 @@ def test_a_mesh_in_ply_is_read_as_its_like_in_obj_and_wrong_corners_do_not_end_t
     volume = coal_volume(collision.Mesh.read(tmp_path / "m.obj", 0.5))
     assert coal_volume(text) == pytest.approx(volume, abs=1e-12)
     (tmp_path / "m.ply").write_bytes(PLY.replace(b"3 1 2 3", b"3 1 2 9"))
-    with pytest.raises(InvalidGeometry, match="corners are none of its 4 vertices"):
+    with pytest.raises(InvalidGeometry, match="indices outside its 4 vertices"):
         collision.Mesh.read(tmp_path / "m.ply")
     (tmp_path / "r.urdf").write_bytes(URDF.replace(b"m.obj", b"m.ply"))
-    with pytest.raises(InvalidModel, match="corners are none of its 4 vertices"):
+    with pytest.raises(InvalidModel, match="indices outside its 4 vertices"):
         _ = mik.load_robot(tmp_path / "r.urdf").visual_model
+
+
+def test_mjcf_names_no_mesh_that_would_end_the_process(tmp_path: Path) -> None:
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "meshes" / "odd.ply").write_bytes(PLY.replace(b"3 1 2 3", b"3 1 2 9"))
+    text = MESHES_MJCF.replace(b"<asset>", b'<compiler meshdir="meshes"/><asset>') % b"odd.ply"
+    for content in (text, MESHES_MJCF % b"meshes/odd.ply"):
+        (tmp_path / "r.xml").write_bytes(content)
+        with pytest.raises(InvalidModel, match="corners are none of its 4 vertices"):
+            _ = mik.load_robot(tmp_path / "r.xml").visual_model
+    (tmp_path / "r.xml").write_bytes(MESHES_MJCF.replace(b"<mujoco>", b'<mujoco model="a\xb3">') % b"")
+    with pytest.raises(InvalidModel, match="is not MJCF that can be read"):
+        mik.load_robot(tmp_path / "r.xml")
+
+
+@pytest.mark.parametrize(
+    ("good", "odd", "says"),
+    [
+        (b"<p>0 2 1", b"<p>0 2 x", "<p> has 'x' where a whole number stands"),
+        (b"<p>0 2 1", b"<p>0 2 -1e308", "<p> has '-1e308' where a whole number stands"),
+        (b'<triangles count="4"', b'<triangles count="4294967296"', "count of <triangles> is '4294967296'"),
+        (b'stride="3"', b'stride="-3"', "stride of <accessor> is '-3'"),
+        (b"</COLLADA>", b"", "no mesh in COLLADA: no element found"),
+        (b"<node ", b"<node>" * 200 + b"<node ", "nested too deeply"),
+    ],
+)
+def test_a_mesh_in_collada_that_would_never_end_is_refused(good: bytes, odd: bytes, says: str, tmp_path: Path) -> None:
+    (tmp_path / "m.dae").write_bytes(DAE)
+    (tmp_path / "m.obj").write_bytes(OBJ)
+    mesh = collision.Mesh.read(tmp_path / "m.dae")
+    assert coal_volume(mesh) == pytest.approx(coal_volume(collision.Mesh.read(tmp_path / "m.obj")), rel=1e-6)
+    for name in ("m.dae", "m.other"):  # coal's reader knows it by its first element, too
+        (tmp_path / name).write_bytes(DAE.replace(good, odd))
+        with pytest.raises(InvalidGeometry, match=says):
+            collision.Mesh.read(tmp_path / name)
+
+
+def test_a_mesh_that_only_coal_can_read_is_drawn(tmp_path: Path) -> None:
+    (tmp_path / "odd.obj").write_bytes(OBJ.replace(b"v 0 0 1", b"v 0< 0 1"))
+    (tmp_path / "r.urdf").write_bytes(MESHES % b"odd.obj")
+    (piece,) = pieces_of(mik.load_robot(tmp_path / "r.urdf"), "meshes")
+    assert len(piece.triangles) >= 4
 
 
 def coal_volume(mesh: collision.Mesh) -> float:
@@ -138,7 +197,7 @@ def test_robots_whose_elements_or_names_no_parser_takes_are_refused(tmp_path: Pa
     with pytest.raises(InvalidModel, match="nested too deeply"):
         mik.load_robot(tmp_path / "r.urdf")
     (tmp_path / "r.urdf").write_bytes(URDF.replace(b'<parent link="base"/>', b'<parent link="arm"/>'))
-    with pytest.raises(InvalidModel, match="hang on no root, but on each other: arm, hand, tool, tip"):
+    with pytest.raises(InvalidModel, match="joined in a circle, without a root: arm, hand, tool, tip"):
         mik.load_robot(tmp_path / "r.urdf")
     (tmp_path / "r.xml").write_bytes(MJCF.replace(b'class="c" size', b'class="other" size'))
     with pytest.raises(InvalidModel, match=r"is not MJCF that can be read|cannot be loaded"):
@@ -152,6 +211,62 @@ def test_geojson_that_holds_what_is_no_object_is_refused(tmp_path: Path) -> None
     (tmp_path / "p.geojson").write_text('{"type": "FeatureCollection", "features": ["Feature"]}')
     with pytest.raises(InvalidGeometry, match="is GeoJSON of type 'Feature'"):
         mobile.load_scene(tmp_path / "p.geojson", (0, 0), (1, 1))
+
+
+@pytest.mark.parametrize("content", [b"x,y,z\n\xff,1,2\n", b"1,2,inf\n", b'"' + b"x" * 200_000 + b'"\n'])
+def test_tables_that_are_no_text_or_no_finite_numbers_are_refused(content: bytes, tmp_path: Path) -> None:
+    (tmp_path / "t.csv").write_bytes(content)
+    for read in (lambda path: read_targets(path, False), read_trajectory):
+        with pytest.raises(InvalidTarget, match=r"t\.csv"):
+            read(tmp_path / "t.csv")
+
+
+def test_files_without_an_end_are_not_read_for_ever(tmp_path: Path) -> None:
+    (tmp_path / "endless.urdf").symlink_to("/dev/zero")
+    with pytest.raises(InvalidModel, match="it has more than 256 MiB"):
+        mik.load_robot(tmp_path / "endless.urdf")
+
+
+def test_an_image_has_no_more_bytes_than_there_are(tmp_path: Path) -> None:
+    from PIL import Image
+
+    Image.new("L", (4, 3)).save(tmp_path / "map.png")
+    whole = (tmp_path / "map.png").read_bytes()
+    at = whole.index(b"IDAT") - 4
+    (tmp_path / "map.png").write_bytes(whole[:at] + b"\xff\xff\xff\xff" + whole[at + 4 :])
+    with contextlib.suppress(InvalidGeometry), room(address_space() + (1 << 30)):
+        read_image(tmp_path / "map.png")  # no MemoryError
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("goal = 3", "is a table with a kind"),
+        ('[[goal]]\nkind = "posture"\njoints = {a = {b = 1}}', "joint 'a': expected numbers of shape"),
+        ('[[goal]]\nkind = "posture"\njoints = {a = [[1, 2], [3]]}', "joint 'a': expected numbers of shape"),
+        ('[[goal]]\nkind = "posture"\njoints = {a = "up"}', "joint 'a': expected numbers of shape"),
+    ],
+)
+def test_goals_of_the_wrong_kind_are_refused(text: str, says: str, tmp_path: Path) -> None:
+    (tmp_path / "g.toml").write_text(text)
+    with pytest.raises(InvalidTarget, match=says):
+        read_goals([], [], tmp_path / "g.toml")
+
+
+def test_a_phase_lasts_no_less_than_nothing(tmp_path: Path) -> None:
+    (tmp_path / "t.json").write_text('{"start": [0, 0, 0], "v": 1, "phases": [[-1e308, 0, 0, 0]]}')
+    with pytest.raises(InvalidSetting, match="a phase lasts 0 s or longer"):
+        load_trajectory(tmp_path / "t.json")
+
+
+def test_a_damaged_map_in_parquet_is_refused(tmp_path: Path) -> None:
+    robot = mik.load_robot("asr_twodof")
+    mik.reachability(mik.Chain(robot, robot.frame), np.array([[0.1, 0.1, 0.1]])).save(tmp_path / "m.parquet")
+    whole = (tmp_path / "m.parquet").read_bytes()
+    for content in (whole[:-30], whole.replace(b"reachability", b"reachabilitx"), b"PAR1" + b"[" * 400):
+        (tmp_path / "m.parquet").write_bytes(content)
+        with pytest.raises(InvalidSetting, match=r"m\.parquet is not a map"):
+            mik.Reachability.load(tmp_path / "m.parquet")
 
 
 def test_a_grid_beyond_all_numbers_is_refused(tmp_path: Path) -> None:
@@ -176,7 +291,7 @@ def test_a_row_with_values_of_another_kind_is_none(change: dict[str, object], tm
     (trial,) = read_rows(tmp_path)
     assert trial.x == (0, 1.5)
     (tmp_path / ROWS).write_text(json.dumps({**row, **change}) + "\n")
-    with pytest.raises(InvalidSetting, match=r"line 1 of .* is no row"):
+    with pytest.raises(InvalidSetting, match=r"line 1 of .* is not a row"):
         read_rows(tmp_path)
     with pytest.raises(InvalidSetting, match="holds no comparison"):
         read_results(tmp_path)

@@ -7,6 +7,8 @@ import tomllib
 from importlib.metadata import version
 from pathlib import Path
 
+from packaging.requirements import Requirement
+
 ROOT = Path(__file__).parents[1]
 LONGEST = 0.6  # s of processor time beyond what Pinocchio and numpy take to import; 0.2 where nothing else runs
 
@@ -60,6 +62,19 @@ def test_every_floor_is_met_here_and_printed_for_the_job_that_installs_it() -> N
         name, _, floor = dependency.partition(">=")
         assert floor and floors[name] == floor, "a dependency without a floor"
         assert numbers(version(name)) >= numbers(floor)
+
+
+def test_the_lock_of_ci_has_a_version_of_every_dependency_that_is_allowed() -> None:
+    lines = (ROOT / ".github" / "constraints.txt").read_text().splitlines()
+    locked = [Requirement(line) for line in lines if not line.startswith("#")]
+    here = {one.name.lower(): one.specifier for one in locked if one.marker is None or one.marker.evaluate()}
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    extras = ("plots", "cma", "mobile", "qp", "timing", "compare", "cluster", "peers", "viewer", "toolbox", "dev")
+    asked = [*project["dependencies"], *(one for name in extras for one in project["optional-dependencies"][name])]
+    for one in map(Requirement, asked):
+        if one.name != project["name"] and (one.marker is None or one.marker.evaluate()):
+            (pin,) = here[one.name.lower()]
+            assert pin.version in one.specifier, f"run make lock: {one} and {pin}"
 
 
 def numbers(text: str) -> list[int]:

@@ -17,14 +17,17 @@ MODULES = (
     "pin_metaik.ik.goals",
     "pin_metaik.ik",
     "pin_metaik.collision",
+    "pin_metaik.collision.viewer",
     "pin_metaik.kinematics",
     "pin_metaik.robots",
     "pin_metaik.motion",
     "pin_metaik.timing",
     "pin_metaik.planning",
     "pin_metaik.reachable",
+    "pin_metaik.reachable.viewer",
     "pin_metaik.mobile",
     "pin_metaik.stewart",
+    "pin_metaik.export",
     "pin_metaik.optimize",
     "pin_metaik.learn",
     "pin_metaik.compare",
@@ -33,24 +36,27 @@ MODULES = (
 )
 
 
-def names(module: ModuleType) -> list[str]:
-    """The public names that a module's page has."""
+def names(module: ModuleType) -> tuple[list[str], list[str]]:
+    """The public names of a module: those that its page describes, and those that the page of ``pin_metaik`` does."""
     listed = getattr(module, "__all__", None)
     if listed is None:
         listed = [name for name, value in vars(module).items() if inspect.isclass(value) and name[0].isupper()]
         listed = [name for name in listed if getattr(module, name).__module__ == module.__name__]
+    listed = [name for name in listed if not inspect.ismodule(getattr(module, name))]
     top = importlib.import_module("pin_metaik")
-    own = [name for name in listed if module is top or getattr(top, name, None) is not getattr(module, name)]
-    return [name for name in own if not inspect.ismodule(getattr(module, name))]
+    exported = [name for name in listed if module is not top and getattr(top, name, None) is getattr(module, name)]
+    return [name for name in listed if name not in exported], exported
 
 
 def page(name: str) -> str:
     """A module's page in reStructuredText."""
     module = importlib.import_module(name)
-    public = names(module)
+    public, exported = names(module)
     about = inspect.cleandoc(module.__doc__ or "").partition("\n")[0]
-    lines = [name, "=" * len(name), "", about, "", f".. currentmodule:: {name}", ""]
-    lines += [".. autosummary::", "   :nosignatures:", ""]
+    lines = [name, "=" * len(name), "", about, ""]
+    if exported:
+        lines += ["Described with ``pin_metaik``: " + ", ".join(f":obj:`~pin_metaik.{each}`" for each in exported), ""]
+    lines += [f".. currentmodule:: {name}", "", ".. autosummary::", "   :nosignatures:", ""]
     lines += [f"   {each}" for each in public if callable(getattr(module, each))]
     for each in public:
         lines += ["", each, "-" * len(each), "", *_entry(each, getattr(module, each))]
@@ -91,7 +97,7 @@ def _public(app: Any, env: Any, node: Any, content: Any) -> Any:
     """Where a type is documented: under its public name, which is not that of the file it is written in."""
     target = node.get("reftarget", "").rpartition(".")[2]
     for name in MODULES if node.get("refdomain") == "py" else ():
-        if target in names(importlib.import_module(name)):
+        if target in names(importlib.import_module(name))[0]:
             domain = env.get_domain("py")
             found = domain.objects.get(f"{name}.{target}")
             if found is not None:

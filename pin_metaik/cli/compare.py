@@ -1,4 +1,4 @@
-"""``pin-metaik compare``, ``report`` and ``replay``: methods on hard cases, and what became of them."""
+"""``pin-metaik compare``, ``report`` and ``replay``: methods on hard cases, and the report on them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,12 @@ class Backend(StrEnum):
 
 def compare(
     robot: Annotated[list[str], typer.Option(help="Robots: names, or paths of .urdf and DH .toml files.")],
-    out: Annotated[Path, typer.Option(file_okay=False, help="Folder for the rows; goes on with those that it holds.")],
+    out: Annotated[
+        Path,
+        typer.Option(
+            file_okay=False, help="Folder for the rows; if it holds some already, the comparison goes on with them."
+        ),
+    ],
     cases: Annotated[list[str], typer.Option(help=f"{', '.join(CASES)}, or module:object.")],
     methods: Annotated[
         list[str],
@@ -39,16 +44,24 @@ def compare(
             "ikpy, pink, trac_ik or toolbox if installed; or module:object."
         ),
     ],
-    tasks: Annotated[int, typer.Option("--tasks", "--targets", min=1, help="Tasks of each case for each robot.")] = 100,
-    seeds: Annotated[int, typer.Option(min=1, help="Repetitions of each method on each task.")] = 1,
+    tasks: Annotated[
+        int, typer.Option("--tasks", "--targets", min=1, help="Number of tasks of each case for each robot.")
+    ] = 100,
+    seeds: Annotated[int, typer.Option(min=1, help="Number of repetitions of each method on each task.")] = 1,
     budget: Annotated[int, typer.Option(min=1, help="Kernel evaluations for each target.")] = 5000,
-    rng: Annotated[int, typer.Option(min=0, help="Seed of everything random.")] = 0,
-    jobs: Annotated[int, typer.Option(help="Processes, 1 or more; -1: one a core. The rows do not depend on it.")] = 1,
-    backend: Annotated[Backend, typer.Option(help="Processes here, or a Dask cluster.")] = Backend.LOKY,
-    scheduler: Annotated[str | None, typer.Option(help="Of the Dask cluster, e.g. tcp://localhost:8786.")] = None,
+    rng: Annotated[int, typer.Option(min=0, help="Seed of every random choice.")] = 0,
+    jobs: Annotated[
+        int, typer.Option(help="Number of processes; -1: one for each core. The rows do not depend on it.")
+    ] = 1,
+    backend: Annotated[
+        Backend, typer.Option(help="Processes on this machine (loky), or a Dask cluster (dask).")
+    ] = Backend.LOKY,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of the Dask scheduler, e.g. tcp://localhost:8786.")
+    ] = None,
     as_json: Json = False,
 ) -> None:
-    """Compare methods on hard cases at equal budgets. Ctrl-C loses nothing: the same command goes on."""
+    """Compare methods on hard cases at equal budgets. After Ctrl-C the same command goes on."""
     sys.path.insert(0, "")  # module:object may be in the folder one is in
     suite = Suite(split(robot), split(cases), split(methods), tasks, seeds, budget, rng)
     command = join(["pin-metaik", *sys.argv[1:]])
@@ -83,7 +96,7 @@ def replay(
     trial: Annotated[str, typer.Argument(help="ROBOT/CASE/TASK/METHOD/SEED, as the report lists them.")],
     as_json: Json = False,
 ) -> None:
-    """Run one trial of a comparison again. Exit code 0: it ends as the row says, 1: it does not."""
+    """Run one trial of a comparison again. Exit code 0: its row is the same, 1: it differs."""
     sys.path.insert(0, "")
     replayed = again(folder, trial)
     if as_json:

@@ -1,4 +1,4 @@
-"""What the shell completes: names of robots, scenes, papers, cases and methods."""
+"""Shell completion of names: robots, scenes, papers, cases and methods."""
 
 from __future__ import annotations
 

@@ -50,9 +50,9 @@ def demo(as_json: Json = False) -> None:
         return
     console = Console(highlight=False)
     console.print(_table(rows))
-    console.print("\nErrors are Pinocchio's, recomputed from the answer. RV-7FL: position only, as in its paper.")
+    console.print("\nErrors are recomputed from each result by Pinocchio. RV-7FL: position only, as in its paper.")
     console.print(
-        "Times are of a second solve: the first one on a machine compiles, the first of a chain makes its tables."
+        "Times are those of a second solve: the first on a machine compiles, the first of a chain makes its tables."
     )
 
 

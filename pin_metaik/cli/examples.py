@@ -1,4 +1,4 @@
-"""Examples that the help of each command ends with. The tests have the command line read all of them."""
+"""Examples at the end of the help of each command. The tests parse all of them."""
 
 from __future__ import annotations
 

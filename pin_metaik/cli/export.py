@@ -15,13 +15,16 @@ from pin_metaik.robots import load_robot
 
 def export(
     robot: Annotated[str, typer.Argument(help="A robot's name (see `robots`), or the path of a .urdf or DH .toml.")],
-    out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="What to write: arm.c or arm.py.")],
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="File to write: arm.c or arm.py.")],
     frame: Annotated[str | None, typer.Option(help="The frame to place; default: the robot's tip.")] = None,
     lock: Annotated[
-        list[str] | None, typer.Option(metavar="JOINT", help="A joint that stays at its neutral; may be repeated.")
+        list[str] | None,
+        typer.Option(
+            metavar="JOINT", help="A joint that keeps its value of the neutral configuration; may be repeated."
+        ),
     ] = None,
 ) -> None:
-    """Write what solves an arm with a closed form, all its configurations for a pose, as C or Python of its own."""
+    """Write standalone C or Python that computes all configurations of an arm with a closed form for a pose."""
     loaded = load_robot(robot)
     chain = Chain(loaded.model, loaded.frame if frame is None else frame, locked=split(lock or ()))
     write_export(chain, out)

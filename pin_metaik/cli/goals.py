@@ -1,8 +1,8 @@
-"""Goals as the command line has them: a kind of goal, and its fields as ``NAME=VALUE``, in words or in a file."""
+"""Goals on the command line: a kind of goal and its fields as ``NAME=VALUE``, or a file of goals."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
@@ -38,8 +38,8 @@ def read_goals(words: Sequence[str], wishes: Sequence[str], file: Path | None) -
     """
     content = {} if file is None else read_toml(file, InvalidTarget)
     known_keys(content, str(file), InvalidTarget, (), ("goal", "wish"))
-    musts = [_goal(*_split(text)) for text in words] + [_goal(*_entry(one, file)) for one in content.get("goal", [])]
-    wished = [_wish(*_split(text)) for text in wishes] + [_wish(*_entry(one, file)) for one in content.get("wish", [])]
+    musts = [_goal(*one) for one in (*map(_split, words), *_entries(content, "goal", file))]
+    wished = [_wish(*one) for one in (*map(_split, wishes), *_entries(content, "wish", file))]
     return [*musts, *wished]
 
 
@@ -61,11 +61,13 @@ def _split(text: str) -> tuple[str, dict[str, Any]]:
     return kind, values
 
 
-def _entry(entry: object, file: Path | None) -> tuple[str, dict[str, Any]]:
-    """Kind and fields of a goal in a file."""
-    if not isinstance(entry, dict) or not isinstance(entry.get("kind"), str):
-        raise InvalidTarget(f"{file}: each [[goal]] and [[wish]] is a table with a kind: {KINDS}")
-    return entry["kind"], {name: value for name, value in entry.items() if name != "kind"}
+def _entries(content: Mapping[str, Any], key: str, file: Path | None) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Kind and fields of each goal in a file, or of each wish."""
+    entries = content.get(key, [])
+    for entry in entries if isinstance(entries, list) else [entries]:
+        if not isinstance(entry, dict) or not isinstance(entry.get("kind"), str):
+            raise InvalidTarget(f"{file}: each [[goal]] and [[wish]] is a table with a kind: {KINDS}")
+        yield entry["kind"], {name: value for name, value in entry.items() if name != "kind"}
 
 
 def _wish(kind: str, values: Mapping[str, Any]) -> Wish:

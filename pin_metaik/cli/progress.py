@@ -1,4 +1,4 @@
-"""A bar on the terminal that long work tells how far it is."""
+"""A progress bar on the terminal."""
 
 from __future__ import annotations
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import time
 from math import degrees, radians
 from pathlib import Path
@@ -19,8 +18,9 @@ from pin_metaik.cli.options import Json
 from pin_metaik.cli.progress import progress_bar
 from pin_metaik.cli.versions import print_json
 from pin_metaik.collision import CollisionWorld, load_scene, scene_names
-from pin_metaik.errors import InvalidSetting, InvalidTarget
+from pin_metaik.errors import InvalidTarget
 from pin_metaik.figures import FORMATS, picture_file
+from pin_metaik.files import read_csv
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.pose import rpy_matrix
 from pin_metaik.optimize import ALGORITHMS, Budget
@@ -43,25 +43,29 @@ def reachability(
     frame: FrameName = None,
     spacing: Annotated[float, typer.Option(help="Distance between neighbouring positions, m.")] = 0.1,
     orientations: Annotated[
-        int, typer.Option(min=0, help="Orientations at each position, spread evenly; 0: any one will do.")
+        int, typer.Option(min=0, help="Number of orientations at each position, spread evenly; 0: at any orientation.")
     ] = 20,
     box: Annotated[
         tuple[float, float, float, float, float, float] | None,
         typer.Option(metavar="X Y Z X Y Z", help="Least and greatest corner, m; default: as far as the robot reaches."),
     ] = None,
     world: WorldName = None,
-    jobs: Annotated[int | None, typer.Option(help="Processes; -1: one a core; default: threads.")] = None,
-    folder: Annotated[Path | None, typer.Option(help="Keep parts of the map here, and go on from there.")] = None,
+    jobs: Annotated[
+        int | None, typer.Option(help="Number of processes; -1: one for each core; default: threads.")
+    ] = None,
+    folder: Annotated[
+        Path | None, typer.Option(help="Folder to store parts of the map in; the same command resumes from it.")
+    ] = None,
     output: Annotated[
         list[Path] | None,
         typer.Option("--output", "-o", help="Write the map (.npz, .parquet) or a picture; may be repeated."),
     ] = None,
     show: Annotated[bool, typer.Option("--show", help="Show it in the browser until Ctrl-C.")] = False,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Of the page; 0: any that is free.")] = 8080,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of the page; 0: any free port.")] = 8080,
     rng: Seed = 0,
     as_json: Json = False,
 ) -> None:
-    """Map which positions a robot reaches, in which share of orientations, and how well it can move there."""
+    """Map the positions a robot reaches, the share of orientations at each, and its manipulability."""
     outputs = output or []
     for path in outputs:
         if path.suffix.lower() in FORMATS:
@@ -95,15 +99,15 @@ def place(
     poses: Annotated[Path, typer.Argument(help="CSV of poses in the world: x,y,z in m, or x,y,z,roll,pitch,yaw.")],
     frame: FrameName = None,
     world: WorldName = None,
-    algorithm: Annotated[str, typer.Option(help=f"What searches: {', '.join(ALGORITHMS)}.")] = "mtde",
-    places: Annotated[int, typer.Option(min=1, help="Places to try.")] = 1000,
+    algorithm: Annotated[str, typer.Option(help=f"The metaheuristic: {', '.join(ALGORITHMS)}.")] = "mtde",
+    places: Annotated[int, typer.Option(min=1, help="Number of placements to try.")] = 1000,
     rng: Seed = 0,
-    in_degrees: Annotated[bool, typer.Option("--degrees", help="Angles in degrees, given and shown.")] = False,
+    in_degrees: Annotated[bool, typer.Option("--degrees", help="Read and print angles in degrees.")] = False,
     as_json: Json = False,
 ) -> None:
     """Find where on the floor to put a robot so that it reaches poses. Exit code 0: all of them, 1: not all."""
     _, chain, around = _asked(robot, frame, world)
-    targets = _read(poses, in_degrees)
+    targets = read_targets(poses, in_degrees)
     with progress_bar("places") as watch:
         found = place_base(
             chain, targets, world=around, algorithm=algorithm, budget=Budget(evaluations=places), rng=rng, watch=watch
@@ -128,13 +132,9 @@ def _asked(robot: str, frame: str | None, scene: str | None) -> tuple[Robot, Cha
     return loaded, chain, None if scene is None else CollisionWorld(loaded, load_scene(scene))
 
 
-def _read(path: Path, in_degrees: bool) -> list[pin.SE3] | NDArray[np.float64]:
+def read_targets(path: Path, in_degrees: bool) -> list[pin.SE3] | NDArray[np.float64]:
     """Poses, or positions (k, 3), from a CSV file; a line of headings may come first."""
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            lines = [line for line in csv.reader(file) if line and not line[0].lstrip().startswith("#")]
-    except OSError as error:
-        raise InvalidSetting(f"cannot read {path}: {error.strerror or error}") from None
+    lines = [line for line in read_csv(path, InvalidTarget) if line and not line[0].lstrip().startswith("#")]
     rows = []
     for number, line in enumerate(lines):
         try:
@@ -144,8 +144,10 @@ def _read(path: Path, in_degrees: bool) -> list[pin.SE3] | NDArray[np.float64]:
                 raise InvalidTarget(
                     f"{path}: row {number + 1} has words that are no numbers: {','.join(line)}"
                 ) from None
-    if not rows or {len(row) for row in rows} not in ({3}, {6}):
-        raise InvalidTarget(f"{path}: each row is x,y,z or x,y,z,roll,pitch,yaw, the same in all, and there is one")
+    if not rows or {len(row) for row in rows} not in ({3}, {6}) or not np.isfinite(rows).all():
+        raise InvalidTarget(
+            f"{path}: each row is x,y,z or x,y,z,roll,pitch,yaw, finite, the same in all; and there is one"
+        )
     if len(rows[0]) == 3:
         return np.array(rows)
     turn = radians(1.0) if in_degrees else 1.0

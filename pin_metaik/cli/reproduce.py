@@ -36,17 +36,17 @@ def reproduce(
     name: Annotated[str, typer.Argument(help=f"One of {', '.join(PAPERS)}.", autocompletion=complete.papers)],
     runs: Annotated[int | None, typer.Option(min=1, help="Runs of each method; default: the paper's number.")] = None,
     quick: Annotated[
-        bool, typer.Option("--quick", help=f"Leave out what takes long; {QUICK_RUNS} runs if not told.")
+        bool, typer.Option("--quick", help=f"Leave out what takes long; {QUICK_RUNS} runs unless --runs is given.")
     ] = False,
-    long: Annotated[bool, typer.Option("--long", help="Run what takes hours, too.")] = False,
+    long: Annotated[bool, typer.Option("--long", help="Also run what takes hours.")] = False,
     out: Annotated[
         Path | None, typer.Option(file_okay=False, help="Folder for HTML, Markdown, CSV files and figures.")
     ] = None,
     figures: Annotated[bool, typer.Option(help="Draw figures into --out; needs the extra plots.")] = True,
-    rng: Annotated[int, typer.Option(min=0, help="Seed of everything random.")] = 0,
+    rng: Annotated[int, typer.Option(min=0, help="Seed of every random choice.")] = 0,
     as_json: Json = False,
 ) -> None:
-    """Run a paper's experiment again: its numbers and ours side by side. Ctrl-C keeps what is done."""
+    """Run a paper's experiment again, and show its numbers beside ours. Ctrl-C keeps what is done."""
     paper = lookup("paper", name, PAPERS)
     if out is not None:
         if figures:

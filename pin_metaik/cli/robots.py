@@ -24,13 +24,15 @@ MANY = 9
 
 
 def robots(
-    words: Annotated[list[str] | None, typer.Argument(help="Only those that hold all of these words.")] = None,
+    words: Annotated[
+        list[str] | None, typer.Argument(help="Show only robots whose line contains all of these words.")
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """List the robots that can be loaded by name: joints, tip, closed form, and what is proved of a pose.
 
-    Joints are those of the model, and those that place the tip. `closed form`, `boxes` and `count` are how it is proved
-    that a pose is unreachable, and that all solutions of one that is reachable are found.
+    There are two numbers of joints: all of the model, and those that move the tip. The last columns name the methods
+    (`closed form`, `boxes`, `count`) that prove a pose unreachable, or prove that all solutions of a pose are found.
     """
     named = [
         robot

@@ -1,4 +1,4 @@
-"""A metaheuristic as the command line names it: its name, and settings as ``key=value``."""
+"""A metaheuristic on the command line: its name, and settings as ``key=value``."""
 
 from __future__ import annotations
 

@@ -56,36 +56,42 @@ def solve(
         typer.Option(
             "--set",
             metavar="NAME=VALUE",
-            help="A parameter of a DH table, in its units, such as h=10, or an argument of xacro; may be repeated.",
+            help="A parameter of a DH table, in its units, such as h=10, or a xacro argument; may be repeated.",
         ),
     ] = None,
     rpy: Annotated[
         tuple[float, float, float] | None,
-        typer.Option(metavar="R P Y", help="Target orientation Rz(Y) Ry(P) Rx(R) in radians; without it: any."),
+        typer.Option(
+            metavar="R P Y", help="Target orientation Rz(Y) Ry(P) Rx(R) in radians; default: any orientation."
+        ),
     ] = None,
     frame: Annotated[
         list[str] | None,
         typer.Option(
             "--frame",
             "--tip",
-            help="The frame to place; default: the robot's tip. Repeated: others that goals are about.",
+            help="The frame to place; default: the robot's tip. May be repeated for further frames of --goal.",
         ),
     ] = None,
     goal: Annotated[
         list[str] | None,
         typer.Option(
             metavar="'KIND NAME=VALUE ...'",
-            help="A goal beside the target, such as 'look_at frame=tool0 point=1,0,0.5', m and rad; may be repeated. "
-            f"Kinds: {KINDS}.",
+            help="A goal in addition to the target, such as 'look_at frame=tool0 point=1,0,0.5', m and rad; may be "
+            f"repeated. Kinds: {KINDS}.",
         ),
     ] = None,
     wish: Annotated[
-        list[str] | None, typer.Option(metavar="'KIND NAME=VALUE ...'", help="The same as a wish; may be repeated.")
+        list[str] | None,
+        typer.Option(
+            metavar="'KIND NAME=VALUE ...'",
+            help="A goal that is improved as far as the others leave freedom; written as for --goal; may be repeated.",
+        ),
     ] = None,
     goals: Annotated[
         Path | None, typer.Option(help="A TOML file of goals: [[goal]] and [[wish]], each with kind.")
     ] = None,
-    base: Annotated[str, typer.Option(help=f"What joins the robot to the world: {', '.join(BASES)}.")] = "fixed",
+    base: Annotated[str, typer.Option(help=f"Joint between the base and the world: {', '.join(BASES)}.")] = "fixed",
     limit: Annotated[
         list[str] | None,
         typer.Option(
@@ -94,27 +100,28 @@ def solve(
         ),
     ] = None,
     lock: Annotated[
-        list[str] | None, typer.Option(metavar="JOINT", help="A joint that stays where --q0 has it; may be repeated.")
+        list[str] | None, typer.Option(metavar="JOINT", help="A joint that keeps its value of --q0; may be repeated.")
     ] = None,
     q0: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="JOINT=VALUE", help="Where to start, by joint, or all entries of q; with commas, or repeated."
+            metavar="JOINT=VALUE",
+            help="Start configuration: values of joints, or all entries of q, separated by commas or repeated.",
         ),
     ] = None,
     seeder: Annotated[str, typer.Option(help=f"Where starts come from: {SEEDERS}.")] = "auto",
-    refiner: Annotated[str, typer.Option(help=f"What refines them: {', '.join(REFINERS)} or none.")] = "dls",
+    refiner: Annotated[str, typer.Option(help=f"Local method that refines them: {', '.join(REFINERS)}, none.")] = "dls",
     select: Annotated[
-        str, typer.Option(help=f"Which solution: first, which is the quickest to find, {', '.join(CRITERIA)}.")
+        str, typer.Option(help=f"Which solution to return: first (found soonest), {', '.join(CRITERIA)}.")
     ] = "first",
     weight: Annotated[
         list[str] | None,
         typer.Option(
             metavar="JOINT=WEIGHT",
-            help=f"How much a joint counts for --select {', '.join(WEIGHTED)}; others count 1; may be repeated.",
+            help=f"Weight of a joint for --select {', '.join(WEIGHTED)}; default 1; may be repeated.",
         ),
     ] = None,
-    evaluations: Annotated[int, typer.Option(help="Forward kinematics that may be spent.")] = EVALUATIONS,
+    evaluations: Annotated[int, typer.Option(help="Budget: largest number of forward kinematics.")] = EVALUATIONS,
     world: Annotated[
         str | None,
         typer.Option(
@@ -123,15 +130,18 @@ def solve(
     ] = None,
     srdf: Annotated[
         str | None,
-        typer.Option(help="In the world: pairs of links not to check; default: the robot's own file."),
+        typer.Option(
+            help="With --world: an SRDF with pairs of links that are not checked; default: the robot's own file."
+        ),
     ] = None,
     allow: Annotated[
-        list[str] | None, typer.Option(metavar="A,B", help="In the world: a pair that may collide; may be repeated.")
+        list[str] | None,
+        typer.Option(metavar="A,B", help="With --world: a pair of names that is not checked; may be repeated."),
     ] = None,
     visual: Annotated[
-        bool, typer.Option(help="In the world: check what a robot looks like, if it has no collision geometry.")
+        bool, typer.Option(help="With --world: check the visual geometry of a robot without collision geometry.")
     ] = True,
-    margin: Annotated[float | None, typer.Option(help="Distance to keep from everything in the world, m.")] = None,
+    margin: Annotated[float | None, typer.Option(help="With --world: distance to keep between bodies, m.")] = None,
     picture: Annotated[
         Path | None,
         typer.Option(
@@ -139,22 +149,25 @@ def solve(
         ),
     ] = None,
     in_browser: Annotated[
-        bool, typer.Option("--show", help="Show the robot there in the browser, until Ctrl-C; needs the extra viewer.")
+        bool,
+        typer.Option(
+            "--show", help="Show the robot at the solution in the browser, until Ctrl-C; needs the extra viewer."
+        ),
     ] = False,
     rng: Annotated[int, typer.Option(min=0, help="Seed of every random choice.")] = 0,
-    in_degrees: Annotated[bool, typer.Option("--degrees", help="Angles in degrees, given and shown.")] = False,
+    in_degrees: Annotated[bool, typer.Option("--degrees", help="Read and print angles in degrees.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Solve for one target, or for goals. Exit code 0: solved, 1: not solved, 2: the call makes no sense.
+    """Solve for one target, or for goals. Exit code 0: solved, 1: not solved, 2: invalid arguments.
 
-    Loops of an MJCF (<connect>, <weld>) stay closed.
+    Loop closures of an MJCF (<connect>, <weld>) are kept as goals.
     """
     if position is None and rpy is None and not goal and goals is None:
         raise InvalidTarget("nothing to reach: give --position X Y Z, --rpy R P Y, both, or --goal")
     asked = read_goals(goal or (), wish or (), goals)
     for option, value in (("--margin", margin), ("--srdf", srdf), ("--allow", allow), ("--no-visual", not visual)):
         if value and world is None:
-            raise InvalidSetting(f"{option} is about a world: give --world, too, e.g. --world {ALONE}")
+            raise InvalidSetting(f"{option} needs a world: give --world, too, e.g. --world {ALONE}")
     if picture is not None:
         picture_file(picture)
     lookup("base", base, BASES)

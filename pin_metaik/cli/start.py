@@ -1,4 +1,4 @@
-"""Configurations as the command line names them: joints by name, or all entries of q."""
+"""Configurations on the command line: joints by name, or all entries of q."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _number(text: str) -> float:
     try:
         value = float(text)
     except ValueError:
-        raise InvalidConfiguration(f"{text!r} is no number: give --q0 JOINT=VALUE or all entries of q") from None
+        raise InvalidConfiguration(f"{text!r} is not a number: give --q0 JOINT=VALUE or all entries of q") from None
     if not isfinite(value):
         raise InvalidConfiguration(f"--q0 takes finite numbers, got {text!r}")
     return value

@@ -10,7 +10,7 @@ import typer
 
 def toolbox(
     host: Annotated[
-        str, typer.Option(help="Address to listen on; off loopback, a browser needs the token that is printed.")
+        str, typer.Option(help="Address to listen on; from other machines, a browser needs the token that is printed.")
     ] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port to listen on; 0 for any that is free.")] = 8080,
     browser: Annotated[bool, typer.Option(help="Open it in the browser of this machine.")] = True,

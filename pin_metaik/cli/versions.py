@@ -1,4 +1,4 @@
-"""Answers as JSON, with the versions that they depend on and their units, for whoever reads them later."""
+"""Results as JSON, with their units and the versions that they depend on."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``pin-metaik warm``: compile every loop and lay out every table now, for a container or before a demonstration."""
+"""``pin-metaik warm``: compile every loop ahead of use, for a container or before a demonstration."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from pin_metaik.robots import load_robot
 
 
 def warm(
-    robot: Annotated[list[str] | None, typer.Option(help="Robots whose meshes are simplified, too.")] = None,
+    robot: Annotated[list[str] | None, typer.Option(help="Robots whose meshes are simplified as well.")] = None,
     as_json: Json = False,
 ) -> None:
-    """Compile every loop, and say what was done and how long it took. Loops compiled earlier are left alone."""
+    """Compile all loops ahead of use, and report the time; those compiled earlier are skipped."""
     from pin_metaik.compiled import ahead
 
     robots = [load_robot(name) for name in robot or ()]
@@ -41,7 +41,7 @@ def warm(
         return
     spent = seconds.pop("loops")
     print(
-        f"compiled {len(todo)} of {len(loops)} loops in {spent:.1f} s, kept in {folder}"
+        f"compiled {len(todo)} of {len(loops)} loops in {spent:.1f} s, stored in {folder}"
         if todo
         else f"all {len(loops)} loops are there"
     )

@@ -1,7 +1,7 @@
-"""Many configurations at once, on all cores: in processes, as coal does not let go of Python's interpreter.
+"""Many configurations at once, on all cores: in processes, because coal holds Python's global lock.
 
-Each process has the world as it is at the call. Few configurations are checked in this process: the time of the rest
-is estimated from the first tenth of a second of checks.
+Each process has the world as it is at the call. The first tenth of a second of checks is done in this process, to
+estimate the time of the rest; few configurations are checked here alone.
 """
 
 from __future__ import annotations

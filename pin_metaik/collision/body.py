@@ -1,4 +1,4 @@
-"""Bodies: the pieces of geometry that a world checks against each other, of the robot, grasped, or standing around."""
+"""Bodies: the pieces of geometry that a world checks against each other: links, grasped objects and obstacles."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def _pieces(robot: Geometry, visual: bool) -> list[Any]:
             return pieces
         if not visual:
             raise InvalidGeometry(
-                f"{robot.name} has no collision geometry, and its visual geometry is not to be checked"
+                f"{robot.name} has no collision geometry, and visual=False leaves out its visual geometry"
             )
         seen = getattr(robot, "visual_model", None)
         pieces = [] if seen is None else list(seen.geometryObjects)

@@ -1,7 +1,7 @@
 """Checks in three steps: boxes, then coarse solids, then the original geometry, which decides.
 
 No contact between the boxes, or between the coarse solids, implies no contact between the bodies that they enclose. So
-the answers are those of the original geometry, and nearly always cost no more than the coarse one.
+the results are those of the original geometry, nearly always at the cost of the coarse one.
 """
 
 from __future__ import annotations
@@ -95,14 +95,16 @@ class Checker:
                 found.append((Contact(self._name(i), self._name(j), depth), carriers))
         return found
 
-    def nearest(self, q: NDArray[np.float64]) -> Distance:
-        """The two bodies nearest to each other at q (nq,), of all that move against each other."""
+    def nearest(self, q: NDArray[np.float64], of: Container[str] | None = None) -> Distance:
+        """The two bodies nearest to each other at q (nq,), of all that move against each other or of these."""
         placed = self.solids.place(q)
         best = Distance(math.inf, "", "", np.full(3, np.nan), np.full(3, np.nan))
         done: set[tuple[int, int]] = set()
         for reach in (0.0, *REACH):
             near = placed.near(self._bare, min(reach, best.distance))
             new = [(i, j, own) for i, j, own in near if (i, j) not in done]
+            if of is not None:
+                new = [(i, j, own) for i, j, own in new if self._name(i) in of or self._name(j) in of]
             done.update((i, j) for i, j, _ in new)
             coarse = [(placed.gap(*self.levels_of(*pair)[:2]), pair) for pair in new]
             for gap, pair in sorted(coarse):

@@ -1,4 +1,4 @@
-"""What sensors see, as solids: points with a radius, occupied cells, and fields of heights.
+"""Sensor data as solids: points with a radius, occupied cells, and height fields.
 
 Each is a closed surface of triangles, so that worlds check it as they check any mesh: what is inside collides, too.
 """
@@ -23,11 +23,11 @@ GOLDEN = 0.5 * (1.0 + math.sqrt(5.0))
 
 @dataclass(frozen=True, eq=False)
 class PointCloud:
-    """Points with a radius: each an icosahedron around its ball, whose corners are a quarter of the radius farther out.
+    """Balls around points, each replaced by an icosahedron around it, whose corners are at 1.25 times the radius.
 
     Attributes:
         points: (k, 3) m; at most 50,000, more are for an ``Octree``.
-        radius: m, how near a point may come.
+        radius: Radius of the balls, m.
     """
 
     points: NDArray[np.float64]
@@ -95,7 +95,7 @@ class Octree:
 
 @dataclass(frozen=True, eq=False)
 class HeightField:
-    """Ground whose height is given over a regular grid, between its points by triangles; solid down to its base.
+    """Ground with heights on a regular grid, interpolated by triangles; solid down to its base.
 
     Attributes:
         size: Extent along x and y, m; the grid is centred at the origin.

@@ -1,4 +1,4 @@
-"""Shapes of coal as triangles, for drawing: only pictures depend on it, never an answer."""
+"""Shapes of coal as triangles, for drawing only."""
 
 from __future__ import annotations
 

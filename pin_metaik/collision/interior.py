@@ -1,4 +1,4 @@
-"""What lies inside a mesh: coal knows a mesh as a surface, which a body well inside does not touch.
+"""Whether points lie inside a mesh: for coal a mesh is a surface, which a body well inside does not touch.
 
 A mesh falls into components, the triangles that share corners. Where every edge of a component belongs to an even
 number of triangles, it is closed, and has an inside; a component that is not closed is a sheet, and counts by its

@@ -1,4 +1,4 @@
-"""Triangle meshes: read from a file or given as arrays, and refused when they are not the surface of a solid."""
+"""Triangle meshes, read from a file or given as arrays; refused if they are not the surface of a solid."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from pin_metaik.collision.numbers import real
 from pin_metaik.errors import InvalidGeometry
+from pin_metaik.mesh_files import check_mesh, is_ply
 from pin_metaik.notice import notice
-from pin_metaik.ply import SUFFIX, read_ply
+from pin_metaik.ply import read_ply
 from pin_metaik.said import warn
 
 FLAT = 1e-9  # thickness of a set of points, in its lengths, below which it has none
@@ -38,12 +39,12 @@ class Mesh:
 
     Attributes:
         vertices: (k, 3) m.
-        triangles: (m, 3) numbers of their corners; ``None`` means the convex hull of the vertices.
-        name: What to call it in messages.
+        triangles: (m, 3) indices of their vertices; ``None`` means the convex hull of the vertices.
+        name: Its name in messages.
 
     Raises:
-        InvalidGeometry: If there are no triangles or vertices, a vertex is not finite, a triangle names a corner that
-            does not exist, the points of a hull lie in a plane, or the surface is not closed.
+        InvalidGeometry: If there are no triangles or vertices, a vertex is not finite, a triangle has an index without
+            a vertex, the points of a hull lie in a plane, or the surface is not closed.
     """
 
     vertices: NDArray[np.float64]
@@ -62,7 +63,9 @@ class Mesh:
         if self.triangles is not None:
             triangles = _triangles(self.triangles)
             if not len(triangles) or triangles.min() < 0 or triangles.max() >= len(vertices):
-                raise InvalidGeometry(f"{self.name} has no triangles (m, 3), or corners that are none of its vertices")
+                raise InvalidGeometry(
+                    f"{self.name} has no triangles (m, 3), or triangles with indices outside its vertices"
+                )
             object.__setattr__(self, "triangles", triangles)
             _check_closed(vertices, triangles, self.name)
         object.__setattr__(self, "hull", convex_hull(vertices, self.name))
@@ -75,11 +78,13 @@ class Mesh:
 
     @staticmethod
     def read(path: str | Path, scale: float = 1.0) -> Mesh:
-        """The mesh in a file that coal's reader knows: .stl, .obj, .dae, .ply and others.
+        """Read a mesh from a file in a format that coal reads: .stl, .obj, .dae, .ply and others.
+
+        Of a .dae, its unit and its upward axis are left out, as Pinocchio leaves them out.
 
         Args:
             path: The file.
-            scale: What its numbers are multiplied with to get metres: 0.001 for millimetres.
+            scale: Factor from its numbers to metres: 0.001 for millimetres.
 
         Raises:
             InvalidGeometry: If there is no such file, it cannot be read, or it is not a closed surface.
@@ -92,7 +97,7 @@ class Mesh:
 
     @cached_property
     def convex(self) -> bool:
-        """Whether the solid is its own convex hull: nothing of its surface is more than ``DENT`` below the hull's."""
+        """Whether the solid is convex: no point of its surface is more than ``DENT`` inside its convex hull."""
         return self.triangles is None or _covers(self.vertices[self.triangles].mean(axis=1), self.hull)
 
     def geometry(self) -> Any:
@@ -114,9 +119,10 @@ def surface(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> Any:
 
 
 def _read(file: Path, scale: float) -> Mesh:
-    if file.suffix.lower() == SUFFIX:
+    if is_ply(file):
         vertices, triangles = read_ply(file, InvalidGeometry)
         return Mesh(scale * vertices, triangles, file.name)
+    check_mesh(file, InvalidGeometry)
     try:
         model = coal.MeshLoader(coal.BV_OBBRSS).load(str(file), np.full(3, scale))
     except (ValueError, RuntimeError) as error:
@@ -168,7 +174,9 @@ def convex_hull(points: NDArray[np.float64], name: str = "mesh") -> Any:
             raise InvalidGeometry(f"{name} has no volume: its {len(points)} points nearly lie in one plane") from None
         except RuntimeError:
             continue
-    raise InvalidGeometry(f"{name} has a convex hull that coal cannot hold: thin it out")
+    raise InvalidGeometry(
+        f"{name} has a convex hull with a corner of more than 255 edges, which coal cannot store: simplify it"
+    )
 
 
 def convex(corners: NDArray[np.float64], triangles: NDArray[Any]) -> Any:

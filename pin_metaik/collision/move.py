@@ -1,4 +1,4 @@
-"""What is known of a straight joint move: that it is free, or where it first touches."""
+"""The result of checking a straight joint move: that it is free, or where it first collides."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ class MoveStatus(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Move:
-    """A straight joint move from one configuration to another, and how far along it nothing collides.
+    """A straight joint move from one configuration to another, and up to where it is free of collisions.
 
     Places on the way are fractions of the move, 0 at its start and 1 at its end.
 
     Attributes:
         status: What is known of it.
-        clear: Up to here it is proved that nothing collides; 1 if the move is free.
-        touch: Where a configuration collides; NaN if none was found. It is the first one as far as ``clear`` tells:
-            what lies between the two is not decided.
+        clear: Fraction up to which it is proved that nothing collides; 1 if the move is free.
+        touch: Fraction at which a collision was found; NaN if none was. There is none before ``clear``; between the two
+            nothing is decided.
         q: (nq,) the configuration at ``touch``, NaN if there is none.
         contact: The two bodies that collide there, the deepest if there are several; None if there are none.
         start: (nq,) the configuration at 0.

@@ -1,4 +1,4 @@
-"""Numbers of a caller as floats, NaN for anything that is no number."""
+"""Numbers given by a caller as floats, NaN for anything that is not a number."""
 
 from __future__ import annotations
 

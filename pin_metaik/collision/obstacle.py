@@ -26,14 +26,14 @@ class Obstacle:
         name: A name that no link and no other obstacle has.
         shape: Its shape.
         pose: Where it stands: ``pin.SE3``, (4, 4), or a position (3,); kept as ``pin.SE3``. Default: the origin.
-        touching: Names of links and obstacles that may touch it.
-        padding: What is added to the world's margin, m: one distance for all pairs of it, or one for each name of a
-            link or obstacle. By name it stands instead of what the padding of the two would add.
+        touching: Names of links and obstacles that may touch it: these pairs are not checked.
+        padding: Distance that is added to the world's margin, m: one for all its pairs, or a mapping from names of
+            links and obstacles. One given by name replaces the sum of the paddings of the two bodies.
 
     Raises:
-        InvalidGeometry: If the name is empty, the shape is none, the pose is not finite and orthonormal, what may
-            touch it is not a list of names, the padding is not made of distances of at least 0 m, or keeps away what
-            may touch it.
+        InvalidGeometry: If the name is empty, the shape is not one of ``Shape``, the pose is not finite and
+            orthonormal, ``touching`` is not a list of names, a padding is not a distance of at least 0 m, or a body in
+            ``touching`` has a padding.
     """
 
     name: str
@@ -57,7 +57,9 @@ class Obstacle:
         object.__setattr__(self, "touching", _names(self.name, self.touching))
         object.__setattr__(self, "padding", _padding(self.name, self.padding))
         if isinstance(self.padding, Mapping) and (both := set(self.padding).intersection(self.touching)):
-            raise InvalidGeometry(f"{min(both)!r} may touch {self.name!r}, and is kept away from it by a padding")
+            raise InvalidGeometry(
+                f"{min(both)!r} is both in touching and in padding of {self.name!r}: take it out of one"
+            )
 
 
 def _names(name: str, touching: Iterable[str]) -> tuple[str, ...]:
@@ -66,7 +68,7 @@ def _names(name: str, touching: Iterable[str]) -> tuple[str, ...]:
     except (TypeError, RuntimeError):  # the latter of what Pinocchio wraps and cannot list
         names = (None,)
     if not all(isinstance(one, str) for one in names):
-        raise InvalidGeometry(f"what may touch {name!r} is a list of names, got {touching!r}")
+        raise InvalidGeometry(f"touching of {name!r} is a list of names, got {touching!r}")
     return cast(tuple[str, ...], names)
 
 

@@ -32,7 +32,9 @@ def read_padding(padding: Mapping[Key, float]) -> dict[Key, float]:
         if not 0.0 <= distance < math.inf:
             raise InvalidSetting(f"a padding is a finite distance of at least 0 m, got {distance!r} for {key!r}")
         if key in read or len(set(names_of(key))) < len(names_of(key)):
-            raise InvalidSetting(f"a padding is of one name or of two different ones, each pair once, got {given!r}")
+            raise InvalidSetting(
+                f"a padding is for one name or for a pair of different names, each once, got {given!r}"
+            )
         read[key] = float(distance)
     return read
 
@@ -46,7 +48,9 @@ def check_padding(padding: Mapping[Key, float], disabled: Mapping[Pair, str]) ->
     for key in padding:
         reason = "" if isinstance(key, str) else disabled.get(key, "")
         if reason not in ("", "Never"):
-            raise InvalidSetting(f"{key[0]!r} and {key[1]!r} cannot be kept apart by a padding: not checked ({reason})")
+            raise InvalidSetting(
+                f"a padding of {key[0]!r} and {key[1]!r} has no effect: they are not checked ({reason})"
+            )
 
 
 def entries(name: str, padding: float | Mapping[str, float]) -> dict[Key, float]:

@@ -97,7 +97,7 @@ def load_scene(source: str | Path) -> tuple[Obstacle, ...]:
     ``octree`` the same with a ``resolution``; a ``height_field`` ``size``, ``heights`` and ``base``.
 
     Raises:
-        UnknownName: If no scene has that name, or a key is none that is read.
+        UnknownName: If no scene has that name, or the file has a key that is not among these.
         InvalidGeometry: If the file is missing or malformed, or an obstacle makes no sense; the message names it.
     """
     if not isinstance(source, str | Path):

@@ -36,15 +36,15 @@ class Screws:
         """The tangent vector (nv,) from q0 to q1 (nq,), the short way round for joints without limits.
 
         Raises:
-            UnsupportedJoint: If a joint is made of several others: its twist varies along a move.
+            UnsupportedJoint: If a joint is composite: its twist varies along a move.
             InvalidConfiguration: If a quaternion, or a cosine and sine, is not of length 1, or a joint is farther from
                 its origin than ``FARTHEST`` or is to move farther than ``LONGEST``.
         """
         for j, joint in enumerate(self.model.joints):
             if joint.shortname() == "JointModelComposite":
                 raise UnsupportedJoint(
-                    f"joint {self.model.names[j]!r} is made of several others: moves of it are not checked; build the "
-                    "model with one joint for each of them"
+                    f"joint {self.model.names[j]!r} is composite, and moves of composite joints cannot be checked; "
+                    "build the model with one joint for each of its parts"
                 )
         for q in (q0, q1):
             check_turns(self.model, self._turned, q)
@@ -159,4 +159,6 @@ def _check_size(what: str, values: NDArray[np.float64], most: float) -> None:
         InvalidConfiguration: One is.
     """
     if (largest := float(np.abs(values).max(initial=0.0))) > most:
-        raise InvalidConfiguration(f"{what} whose way is checked is at most {most:g} rad or m, got {largest:g}")
+        raise InvalidConfiguration(
+            f"{what} can be checked for collisions up to {most:g} rad or m only, got {largest:g}"
+        )

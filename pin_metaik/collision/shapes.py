@@ -18,7 +18,7 @@ from pin_metaik.errors import InvalidGeometry
 
 @dataclass(frozen=True)
 class Box:
-    """A solid box around the origin, an obstacle or a grasped thing; the box of a search is ``mik.Box``.
+    """A solid box centred at the origin; ``mik.Box`` is another class, the search space of an optimisation.
 
     Attributes:
         size: Edge lengths along x, y and z, m.

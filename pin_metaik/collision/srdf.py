@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from pin_metaik.errors import InvalidModel, UnknownName
+from pin_metaik.files import read_text
 
 Pair: TypeAlias = tuple[str, str]
 """Names of two links, the first by the alphabet first."""
@@ -31,10 +32,8 @@ def read_srdf(path: Path, links: Collection[str], *, strict: bool) -> dict[Pair,
         UnknownName: If a link does not exist.
     """
     try:
-        root = ET.fromstring(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise InvalidModel(f"cannot read the SRDF {path}: {error.strerror}") from None
-    except (ET.ParseError, UnicodeDecodeError) as error:
+        root = ET.fromstring(read_text(path, InvalidModel, "an SRDF"))
+    except ET.ParseError as error:
         raise InvalidModel(f"{path} is not an SRDF: {error}") from None
     pairs = {}
     for line in root.iter("disable_collisions"):

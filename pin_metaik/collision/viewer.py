@@ -1,9 +1,10 @@
-"""Looking at a world in the browser, through Pinocchio's viser visualizer: an extra."""
+"""A world in the browser, by Pinocchio's viser visualizer (the extra ``viewer``)."""
 
 from __future__ import annotations
 
 import math
 import time
+from contextlib import suppress
 from typing import Any
 
 import coal
@@ -18,6 +19,8 @@ from pin_metaik.collision.world import CollisionWorld
 from pin_metaik.errors import FrameNotFound, InvalidSetting
 from pin_metaik.lookup import need
 
+__all__ = ["WorldViewer", "open_viewer"]
+
 WOOD, HELD = np.array([0.72, 0.53, 0.35, 1.0]), np.array([0.2, 0.5, 0.3, 1.0])  # red, green, blue, opacity
 RED = np.array([0.85, 0.12, 0.1])
 FIELD = math.radians(40.0)  # vertical field of view
@@ -28,7 +31,7 @@ PAUSE, SAME = 0.5, 3  # s between two looks at a page, and how many must be the 
 
 
 class WorldViewer(ViserVisualizer):  # type: ignore[misc]  # Pinocchio has no types
-    """A ``pinocchio.visualize.ViserVisualizer`` of a world: what collides is red, frames and targets have axes.
+    """A ``pinocchio.visualize.ViserVisualizer`` of a world: colliding bodies are red, frames and targets have axes.
 
     Attributes:
         viewer: The ``viser.ViserServer``.
@@ -98,14 +101,15 @@ class WorldViewer(ViserVisualizer):  # type: ignore[misc]  # Pinocchio has no ty
         """Draw what Pinocchio's visualizer draws as it does, and the rest as triangles."""
         shape = geometry_object.geometry
         if geometry_object.meshPath or isinstance(shape, coal.Box | coal.Sphere | coal.Cylinder):
-            super().loadViewerGeometryObject(geometry_object, prefix, color)
-        else:
-            name = f"{prefix}/{geometry_object.name}"
-            red, green, blue, opacity = geometry_object.meshColor if color is None else color
-            vertices, triangles = surface(shape)
-            self.frames[name] = self.viewer.scene.add_mesh_simple(
-                name, vertices, triangles, color=(red, green, blue), opacity=opacity, flat_shading=True
-            )
+            with suppress(Exception):  # trimesh stumbles, in many ways, over files that coal has read
+                super().loadViewerGeometryObject(geometry_object, prefix, color)
+                return
+        name = f"{prefix}/{geometry_object.name}"
+        red, green, blue, opacity = geometry_object.meshColor if color is None else color
+        vertices, triangles = surface(shape)
+        self.frames[name] = self.viewer.scene.add_mesh_simple(
+            name, vertices, triangles, color=(red, green, blue), opacity=opacity, flat_shading=True
+        )
 
     def _redden(self, names: set[str]) -> None:
         """Show the red twins of the bodies of these names, and of the others the pieces themselves."""
@@ -149,13 +153,13 @@ class WorldViewer(ViserVisualizer):  # type: ignore[misc]  # Pinocchio has no ty
 
 
 def open_viewer(world: CollisionWorld, port: int = 8080, frame: str | None = None) -> WorldViewer:
-    """Show a world, as it is now, at http://localhost:port, to this machine only; what collides is red.
+    """Show a world, as it is now, at http://localhost:port, to this machine only; colliding bodies are red.
 
     A robot without a ``visual_model`` is shown by its collision geometry.
 
     Args:
         world: The world.
-        port: Where; 0 for any port that is free.
+        port: The port; 0 for any free port.
         frame: A frame of the robot whose axes are drawn, such as its tip.
 
     Returns:

@@ -43,23 +43,22 @@ AskMove: TypeAlias = Callable[..., float | tuple[float, ...]]
 class CollisionWorld:
     """Collisions of a robot with itself and with obstacles, and of grasped objects with both.
 
-    Bodies collide when they are no farther apart than the margin, to a micrometre, or one is inside the other. The
-    geometry as it was given decides. A mesh is solid where it is closed: every edge of a part of it, triangles that
-    share corners, belongs to an even number of triangles. A part that is not closed is a sheet, and collides where its
-    surface does; a closed part within another one is a hollow. A robot that stands on something touches it, and does
-    not collide.
+    Two bodies collide when their distance is not above the margin, to a micrometre, or when one is inside the other;
+    the original geometry decides. A connected part of a mesh is solid if it is closed, that is, if every edge belongs
+    to an even number of its triangles; otherwise it is a sheet, and only its surface collides. A closed part inside
+    another one is a hollow. A robot that stands on something touches it and does not collide.
 
-    Changing it (add, move, remove, attach, detach, allow, check) is not for several threads at once; asking it is.
+    Queries may run in several threads at once; changes (add, move, remove, attach, detach, allow, check) may not.
 
     Attributes:
         robot: The robot.
-        model: Its model, which configurations are of.
+        model: The robot's model, whose configurations q are.
         margin: Distance at or below which two bodies collide, m.
-        padding: What is added to it, m, by name or pair of names.
+        padding: Distances that are added to the margin, m, by name or pair of names.
         simplify: The simplified geometry that is checked first.
         exact: Whether the original geometry confirms collisions of the simplified one.
-        obstacles: What stands in the world.
-        grasped: What the robot holds: an obstacle, posed in the frame whose name comes with it.
+        obstacles: The obstacles.
+        grasped: The objects that the robot holds, each with the name of the frame that its pose refers to.
         disabled: The pairs that are not checked, with the reason.
     """
 
@@ -153,7 +152,7 @@ class CollisionWorld:
 
     @checked
     def add(self, obstacle: Obstacle) -> None:
-        """Put up an obstacle.
+        """Add an obstacle.
 
         Raises:
             InvalidGeometry: If its name is taken.
@@ -164,7 +163,7 @@ class CollisionWorld:
 
     @checked
     def move(self, name: str, pose: pin.SE3 | ArrayLike) -> None:
-        """Put an obstacle somewhere else.
+        """Move an obstacle to another pose.
 
         Raises:
             UnknownName: If there is no such obstacle.
@@ -180,10 +179,10 @@ class CollisionWorld:
 
     @checked
     def remove(self, name: str) -> None:
-        """Take away an obstacle or a grasped object.
+        """Remove an obstacle or a grasped object.
 
         Raises:
-            UnknownName: If there is none of that name.
+            UnknownName: If nothing has that name.
         """
         if name not in self._others:
             raise UnknownName("obstacle", name, self._others)
@@ -204,21 +203,21 @@ class CollisionWorld:
         touching: Iterable[str] | None = None,
         padding: float | Mapping[str, float] = 0.0,
     ) -> None:
-        """Grasp an object: from now on it moves with a frame, and must not collide either.
+        """Grasp an object: from now on it moves with a frame and is checked for collisions.
 
         Args:
             name: What to call it.
             shape: Its shape.
             frame: The frame that holds it.
-            pose: Where the object is in that frame.
-            touching: Names of links and obstacles that may touch it; default: what moves on the frame's own link, such
-                as fingers. Links that are fixed to the frame may touch it in any case.
-            padding: What is added to the margin, m, for all pairs of it or by the name of the other.
+            pose: Pose of the object in that frame.
+            touching: Names of links and obstacles that may touch it; default: the links that move on the frame's own
+                link, such as fingers. Links that are fixed to the frame may touch it in any case.
+            padding: Distance that is added to the margin, m: one for all its pairs, or one by name of the other body.
 
         Raises:
             FrameNotFound: If the model has no such frame.
-            InvalidGeometry: If the name is taken, the shape is none, the pose is not finite and orthonormal, or the
-                padding no distance.
+            InvalidGeometry: If the name is taken, the shape is not one of ``Shape``, the pose is not finite and
+                orthonormal, or the padding is not a distance.
             UnknownName: If it may touch, or is kept away from, something that does not exist.
         """
         holder = self.model.frames[frame_id(self.model, frame)]
@@ -267,7 +266,7 @@ class CollisionWorld:
 
     @checked
     def write_srdf(self, path: str | Path) -> None:
-        """Write the pairs of links that are not checked as SRDF: to be read, changed and given back as ``srdf``."""
+        """Write the pairs of links that are not checked as an SRDF file, which can be edited and given as ``srdf``."""
         links = {body.link for body in self._links}
         mine = {pair: reason for pair, reason in self.disabled.items() if links.issuperset(pair)}
         write_srdf(writable(path), self.model.name, mine)
@@ -294,32 +293,39 @@ class CollisionWorld:
         return self.checker.collides(as_configuration(self.model, q))
 
     def pairs_in_collision(self, q: ArrayLike) -> tuple[Contact, ...]:
-        """What collides at configuration q (nq,), the deepest first.
+        """The pairs of bodies that collide at configuration q (nq,), the deepest first.
 
         Raises:
             InvalidConfiguration: If q is not a configuration of the model.
         """
         return self.checker.contacts(as_configuration(self.model, q))
 
-    def min_distance(self, q: ArrayLike) -> Distance:
+    def min_distance(self, q: ArrayLike, *, of: str | None = None) -> Distance:
         """The two bodies nearest to each other at configuration q (nq,), and where; the margin does not count.
+
+        Args:
+            q: The configuration.
+            of: Name of a body, e.g. an obstacle: then the other is what is nearest to it. Default: any two.
 
         Raises:
             InvalidConfiguration: If q is not a configuration of the model.
+            UnknownName: Nothing has that name.
         """
-        return self.checker.nearest(as_configuration(self.model, q))
+        if of is not None and of not in self.names:
+            raise UnknownName("body", of, self.names)
+        return self.checker.nearest(as_configuration(self.model, q), None if of is None else (of,))
 
     def in_collision_batch(self, Q: ArrayLike, *, workers: int | None = None) -> NDArray[np.bool_]:
         """Whether anything collides, (k,), at configurations Q (k, nq).
 
-        Processes help where they save time, from some 100,000 quick checks on two cores; a few thousand that take
-        milliseconds each are enough.
+        Processes are used where they save time: on two cores from about 100,000 quick checks, or a few thousand that
+        take milliseconds each.
 
         Args:
             Q: Configurations.
-            workers: Processes; default: one a core where they are forked and this is the only thread, else none. The
-                answers do not depend on it. Where processes are not forked but begin from nothing, a script that asks
-                for them guards its own start by ``if __name__ == "__main__":``.
+            workers: Number of processes; default: one for each core where they are forked and this is the only thread,
+                otherwise none. The result does not depend on it. Where processes are spawned instead of forked, a
+                script that asks for them needs the guard ``if __name__ == "__main__":``.
 
         Raises:
             InvalidConfiguration: If a row is not a configuration of the model.
@@ -341,9 +347,9 @@ class CollisionWorld:
         return self._answers(_nearest, Q, workers)
 
     def clear_between(self, q0: ArrayLike, q1: ArrayLike, *, resolution: float = RESOLUTION) -> bool:
-        """Whether the straight joint move from q0 to q1 (nq,) is proved free: nothing collides anywhere on the way.
+        """Whether the straight joint move from q0 to q1 (nq,) is proved free of collisions over its whole length.
 
-        The move is the one that ``first_contact`` describes. What it calls undecided does not count as free.
+        See ``first_contact`` for the move; a move that it leaves undecided does not count as free.
 
         Args:
             q0: Where the move starts.
@@ -353,34 +359,35 @@ class CollisionWorld:
         Raises:
             InvalidConfiguration: If q0 or q1 is not a configuration of the model.
             InvalidSetting: If the resolution is not above 0.
-            UnsupportedJoint: If a joint of the model is made of several others.
+            UnsupportedJoint: If a joint of the model is composite.
         """
         positive("resolution", resolution)
         ends = as_configuration(self.model, q0), as_configuration(self.model, q1)
         return _is_clear(self, np.concatenate(ends), resolution)
 
     def first_contact(self, q0: ArrayLike, q1: ArrayLike, *, resolution: float = RESOLUTION) -> Move:
-        """Where the straight joint move from q0 to q1 (nq,) first collides, or that it is free.
+        """Where the straight joint move from q0 to q1 (nq,) first collides, or the proof that it is free.
 
-        All joints move at once, each at its own constant speed (``pin.interpolate``). A joint without limits takes the
-        short way round; of two ways that are equally short, the one that ``Move.at`` follows. Joints with limits move
-        straight through their range, those of several freedoms along the shortest twist.
+        All joints move at once, each at constant speed (``pin.interpolate``). A joint without limits turns the shorter
+        way; of two that are equally short, the one that ``Move.at`` follows. Joints with limits move straight through
+        their range, those with several degrees of freedom along the shortest twist.
 
-        That a move is free is proved for all of it, not sampled: in the middle of each part of it, bodies are farther
-        apart than their margin and what they can move until its ends, which levers of the joints bound. What is called
-        a collision is a configuration that ``in_collision`` calls one.
+        Freedom from collision is proved for the whole move, not sampled: at the middle of each part of the move, bodies
+        are farther apart than their margin plus the distance that they can move until its ends, which is bounded by the
+        lever arms of the joints. A collision is reported only at a configuration for which ``in_collision`` is true.
 
         Args:
             q0: Where the move starts.
             q1: Where it ends.
-            resolution: m; parts of the move in which bodies that may touch move less are not divided further. Before
-                the collision that is found there is none but perhaps in such parts; ``Move.clear`` is where the first
-                of them begins. A move with such parts and no collision is undecided.
+            resolution: m; a part of the move in which no two bodies move farther than this is not divided further, and
+                stays undecided if it is not proved free. An earlier collision than the one found can only be in such a
+                part; ``Move.clear`` is where the first of them begins. A move with undecided parts and no collision is
+                undecided.
 
         Raises:
             InvalidConfiguration: If q0 or q1 is not a configuration of the model.
             InvalidSetting: If the resolution is not above 0.
-            UnsupportedJoint: If a joint of the model is made of several others.
+            UnsupportedJoint: If a joint of the model is composite.
         """
         positive("resolution", resolution)
         ends = np.concatenate([as_configuration(self.model, q0), as_configuration(self.model, q1)])
@@ -400,7 +407,7 @@ class CollisionWorld:
         Raises:
             InvalidConfiguration: If a row is not a configuration of the model, or one has more rows than the other.
             InvalidSetting: If ``workers`` is less than one, or the resolution not above 0.
-            UnsupportedJoint: If a joint of the model is made of several others.
+            UnsupportedJoint: If a joint of the model is composite.
         """
         return self._moves(_is_clear, Q0, Q1, resolution, workers).astype(bool)
 
@@ -418,7 +425,7 @@ class CollisionWorld:
         Raises:
             InvalidConfiguration: If a row is not a configuration of the model, or one has more rows than the other.
             InvalidSetting: If ``workers`` is less than one, or the resolution not above 0.
-            UnsupportedJoint: If a joint of the model is made of several others.
+            UnsupportedJoint: If a joint of the model is composite.
         """
         found = self._moves(_first, Q0, Q1, resolution, workers, width=2)
         ends = np.hstack([np.asarray(Q0, dtype=float), np.asarray(Q1, dtype=float)])
@@ -426,7 +433,7 @@ class CollisionWorld:
 
     @property
     def passages(self) -> Passages:
-        """The search along moves, with the checks as they are laid out now."""
+        """The search along moves, with the current checks."""
         if self._passages is None or self._passages.checker is not self.checker:
             self._passages = Passages(self.checker)
         return self._passages

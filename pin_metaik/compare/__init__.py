@@ -1,4 +1,4 @@
-"""Experiments side by side: methods on hard cases at equal budgets, and papers next to their printed tables."""
+"""Comparisons of methods on hard cases at equal budgets, and reproductions of papers beside their printed tables."""
 
 from pin_metaik.compare.cases import CASES
 from pin_metaik.compare.cases.case import Attempt, Case, Task

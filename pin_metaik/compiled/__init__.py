@@ -48,7 +48,7 @@ def jit(signature: str) -> Callable[[F], F]:
 
 
 # Parts of loops are compiled without reference counting (no NRT): they take arrays, but neither make nor return any.
-# Counting took 25 % of the time of a descent.
+# Counting took 25 % of the time of a descent. An option that a part is not given is that of its first caller.
 PART: dict[str, Any] = {**OPTIONS, "_nrt": False}
 
 
@@ -59,7 +59,7 @@ def inline(function: F) -> F:
 
 def shared(function: F) -> F:
     """A part that a loop calls from several places: it is in the loop once."""
-    return cast(F, _part(function, fastmath=LOOSE, **PART))
+    return cast(F, _part(function, fastmath=LOOSE, forceinline=False, **PART))
 
 
 def exact(function: F) -> F:
@@ -69,7 +69,7 @@ def exact(function: F) -> F:
 
 def allocating(function: F) -> F:
     """A part that makes arrays for a loop before it begins, or returns views of them."""
-    return cast(F, _part(function, **OPTIONS))
+    return cast(F, _part(function, fastmath=LOOSE, forceinline=False, **OPTIONS))
 
 
 def _part(function: Callable[..., Any], **options: Any) -> Part:

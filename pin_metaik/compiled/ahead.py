@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from importlib import import_module
+from itertools import groupby, zip_longest
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -37,11 +38,6 @@ class Version:
         """Have its machine code in this process, and on disk where that can be."""
         import_module(self.module)
         LOOPS[self.module, self.name].compiled(self.without)
-
-    def ship(self, folder: Path) -> None:
-        """Have it written below a folder, for a wheel to carry."""
-        import_module(self.module)
-        LOOPS[self.module, self.name].ship(self.without, folder)
 
 
 def versions() -> tuple[list[Version], list[str]]:
@@ -75,12 +71,18 @@ def each(work: Callable[[Version], None], loops: list[Version]) -> Iterator[Vers
     pool = ProcessPoolExecutor(min(_cores(), max(len(loops), 1)), mp_context=get_context("spawn"))
     try:
         with deaf_children():
-            waiting = {pool.submit(work, loop): loop for loop in loops}
+            waiting = {pool.submit(work, loop): loop for loop in spread(loops)}
         for done in as_completed(waiting):
             done.result()
             yield waiting[done]
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def spread(loops: list[Version]) -> list[Version]:
+    """Those of one folder apart: they have parts in common, which two processes at once would compile twice."""
+    folders = [list(some) for _, some in groupby(loops, key=lambda loop: loop.module.rpartition(".")[0])]
+    return [loop for row in zip_longest(*folders) for loop in row if loop is not None]
 
 
 def _cores() -> int:

@@ -8,13 +8,13 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from functools import cache, cached_property
-from pathlib import Path
 from threading import Timer
 from typing import Any, cast
 
 import numba
 
 from pin_metaik.compiled.on_disk import MachineCode
+from pin_metaik.compiled.types_of_calls import found_out_once
 from pin_metaik.interrupts import Pressed
 
 # Other threads may run meanwhile; division by zero gives inf as in C.
@@ -22,7 +22,7 @@ OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 # Sums may be taken in another order and a b + c be rounded once; infinities and NaN keep their meaning.
 LOOSE = {"contract", "reassoc", "nsz", "arcp"}
 
-WAIT = 3.0  # s; reading machine code from the cache takes a tenth of it
+WAIT = 3.0  # s
 NOTICE = (
     "pin_metaik: compiling inner loops for this machine, once; this takes ten to sixty seconds "
     "(`pin-metaik warm` compiles all of them ahead) ..."
@@ -79,14 +79,16 @@ class Loop:
             loop = numba.njit(fastmath=LOOSE, no_cfunc_wrapper=True, **OPTIONS)(self.function)
             loop._cache = self.machine_code
             signature = self.signatures[without]
-            with nullcontext() if loop._cache.has(signature) else loop._cache.turn():
+            with nullcontext() if loop._cache.has(signature) else loop._cache.turn(), found_out_once():
                 loop.compile(signature)
             loop.disable_compile()
             pressed.check()
         return cast(Callable[..., Any], loop)
 
     def announced(self, without: bool = False) -> Callable[..., Any]:
-        """The same, with a word if it takes long."""
+        """The same, with a word if it is compiled and that takes long."""
+        if self.machine_code.has(self.signatures[without]):  # to read it takes long on a busy machine only
+            return self.compiled(without)
         notice = Timer(WAIT, _tell)
         notice.daemon = True
         notice.start()
@@ -94,11 +96,6 @@ class Loop:
             return self.compiled(without)
         finally:
             notice.cancel()
-
-    def ship(self, without: bool, folder: Path) -> None:
-        """Compile a version and write it, as code that a wheel carries, below a folder."""
-        (code,) = cast(Any, self.compiled(without)).overloads.values()
-        self.machine_code.ship(self.signatures[without], code, folder)
 
 
 @cache

@@ -9,6 +9,7 @@ any, everything is compiled anew in each process.
 from __future__ import annotations
 
 import os
+import shutil
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -16,7 +17,7 @@ from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from pickle import UnpicklingError
-from typing import Any
+from typing import Any, cast
 
 from numba.core import caching, config
 from numba.core.registry import cpu_target
@@ -90,11 +91,13 @@ class MachineCode(caching.NullCache):
                     )
             yield
 
-    def ship(self, signature: str, code: Any, folder: Path) -> None:
-        """Write code as a wheel carries it, below a folder."""
-        inside = folder / _inside(self._file)
+    def ship(self) -> None:
+        """Copy what is kept of it to where a wheel carries it."""
+        kept = next(shelf for shelf in self._shelves if shelf.files())
+        inside = SHIPPED / _inside(self._file)
         inside.mkdir(parents=True, exist_ok=True)
-        Shelf(self._function, inside).save_overload(signature, code)
+        for file in kept.files():
+            shutil.copy(file, inside)
 
     def load_overload(self, signature: Any, context: Any) -> Any:
         """The code for a signature from the first folder that has it, or None."""
@@ -129,6 +132,10 @@ class Shelf(caching.FunctionCache):
         """Whether the index knows code for a signature and this processor."""
         return self._index_key(signature, cpu_target.target_context.codegen()) in self._cache_file._load_index()
 
+    def files(self) -> list[Path]:
+        """Its index, and a file for each signature."""
+        return list(Path(self.cache_path).glob(f"{self._impl.filename_base}.*nb[ci]"))
+
 
 class Shipped(Shelf):
     """Machine code that came with the package, for a processor with a subset of the instructions of this one."""
@@ -150,6 +157,9 @@ class _Implementation(caching.CompileResultCacheImpl):
         self._locator = _Locator(function, folder)
         name = f"{Path(function.__code__.co_filename).stem}.{function.__qualname__}"
         self._filename_base = self.get_filename_base(name, getattr(sys, "abiflags", ""))
+
+    def reduce(self, code: Any) -> tuple[Any, ...]:
+        return cast(tuple[Any, ...], super().reduce(parts.lean(code)))
 
     def rebuild(self, target_context: Any, payload: tuple[Any, ...]) -> Any:
         return parts.read(target_context, payload) or super().rebuild(target_context, payload)

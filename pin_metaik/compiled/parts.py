@@ -57,6 +57,18 @@ class PartLibrary(JITCodeLibrary):
         return (self.name, BITCODE, self._final_module.as_bitcode())
 
 
+def lean(code: CompileResult) -> CompileResult:
+    """What is to be kept of a loop or a part, without what nobody asks for.
+
+    That is numba's report of the types, and beside the machine code of a loop its bitcode, which is three times as long
+    and for others to link in: nobody links a loop. Of it there remains the name that Python calls.
+    """
+    if not isinstance(code.library, PartLibrary):
+        called = f'define void @"{code.fndesc.llvm_cpython_wrapper_name}"() {{ unreachable }}'
+        code.library._shared_module = binding.parse_assembly(called)
+    return code._replace(type_annotation="")
+
+
 def read(context: Any, payload: tuple[Any, ...]) -> CompileResult | None:
     """A part from what numba's ``CompileResult`` was reduced to; None: that is of a loop."""
     (name, kind, bitcode), description, environment, signature, *_ = payload

@@ -1,4 +1,4 @@
-"""An arm's inverse kinematics as source code of its own, for where Python or this package is not."""
+"""An arm's closed-form inverse kinematics as standalone source code, in C or Python."""
 
 from pin_metaik.export.write import LANGUAGES, exported, write_export
 

@@ -26,19 +26,19 @@ EXACT = 1e-6  # m and rad: how far an arm may be from its closed form, as nothin
 
 @checked
 def exported(chain: Chain, language: str = "c") -> str:
-    """The text of a program that has all configurations of an arm for a pose, without this package.
+    """The source text of a function that computes all configurations of an arm for a pose, without this package.
 
-    It has the functions of the compiled kernels, translated, with the arm's numbers in them: for C a function
-    ``arm_solve`` and no dependency but its mathematical library, for Python a function ``solve`` and none but the
-    standard library. Configurations are inside the limits, distinct, and within 1e-5 m and rad of the pose, those by
-    whole turns nearest to a guess.
+    It consists of the functions of the compiled kernels, translated, and the parameters of the arm: for C a function
+    ``arm_solve`` that depends only on the mathematical library, for Python a function ``solve`` that depends only on
+    the standard library. Configurations are inside the limits, distinct, and within 1e-5 m and rad of the pose, those
+    by whole turns nearest to a guess.
 
     Args:
         chain: An arm with a closed form.
         language: ``"c"`` or ``"python"``.
 
     Raises:
-        CannotExport: The arm has no closed form, or is only nearly one that has; or there is no such language.
+        CannotExport: The arm has no closed form, or only nearly (a calibrated arm); or there is no such language.
     """
     if language not in LANGUAGES:
         raise CannotExport(f"there is no export to {language!r}; known: {', '.join(LANGUAGES)}")
@@ -55,14 +55,14 @@ def exported(chain: Chain, language: str = "c") -> str:
 
 @checked
 def write_export(chain: Chain, path: Path) -> None:
-    """Write it to a file; its ending says which language: .c or .py.
+    """Write ``exported`` to a file, whose suffix gives the language: .c or .py.
 
     Raises:
-        CannotExport: As ``exported`` does, or the ending says nothing.
+        CannotExport: As ``exported`` does, or the suffix is another one.
         CannotWrite: The file cannot be written.
     """
     if path.suffix not in SUFFIXES:
-        raise CannotExport(f"the file's ending says the language, {' or '.join(SUFFIXES)}; got {path.name!r}")
+        raise CannotExport(f"the suffix gives the language, {' or '.join(SUFFIXES)}; got {path.name!r}")
     writable(path).write_text(exported(chain, SUFFIXES[path.suffix]), encoding="utf-8")
 
 

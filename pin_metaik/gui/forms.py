@@ -92,6 +92,12 @@ def _input(gui: Any, name: str, hint: Any, value: Any, said: str | None) -> tupl
     return gui.add_text(name, shown, hint=said), lambda text: value_of(name, text)
 
 
+def fine(low: float, high: float) -> tuple[float, int]:
+    """A step of a slider, and the decimals of its numbers: a thousandth of its range or less, and a power of ten."""
+    decimals = -math.floor(math.log10(max(high - low, 1e-9) / 1000.0))
+    return float(10.0**-decimals), max(decimals, 0)
+
+
 def _step(value: float) -> float:
     """A step of an input: a hundredth of the power of ten that the value has."""
     return 10.0 ** (math.floor(math.log10(abs(value))) - 2) if value else 0.001

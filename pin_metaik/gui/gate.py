@@ -69,11 +69,17 @@ class Request(NamedTuple):
         pairs = (line.partition(":") for line in lines)
         return Request(method, target, {name.strip().lower(): value.strip() for name, _, value in pairs}, version)
 
-    def to_page(self) -> bytes:
-        """The request as viser gets it: any address with a state in it is its one page."""
-        path = "/" if self.target.startswith(STATE) and not self.upgrades else self.target
+    @property
+    def wants_page(self) -> bool:
+        """Whether it asks for the one page, at its own address or at one with a state in it."""
+        path = urlsplit(self.target).path
+        return self.method == "GET" and not self.upgrades and (path == "/" or path.startswith(STATE))
+
+    def head(self) -> bytes:
+        """The request as viser gets it."""
         headers = {**self.headers} if self.upgrades else {**self.headers, "connection": "close"}
-        lines = [f"{self.method} {path} {self.version}", *(f"{name}: {value}" for name, value in headers.items())]
+        lines = [f"{self.method} {self.target} {self.version}"]
+        lines += [f"{name}: {value}" for name, value in headers.items()]
         return ("\r\n".join(lines) + "\r\n\r\n").encode("latin-1")
 
 
@@ -91,21 +97,26 @@ class Refused(Exception):
 
     def answer(self) -> bytes:
         """The answer, a line of text."""
-        body = f"{self}\n".encode()
-        fixed = {"Content-Type": "text/plain; charset=utf-8", "Content-Length": str(len(body)), "Connection": "close"}
-        lines = [f"HTTP/1.1 {self.status.value} {self.status.phrase}"]
-        lines += [f"{name}: {value}" for name, value in {**fixed, **self.headers}.items()]
-        return ("\r\n".join(lines) + "\r\n\r\n").encode() + body
+        return answer(self.status, "text/plain", f"{self}\n".encode(), self.headers)
+
+
+def answer(status: HTTPStatus, kind: str, body: bytes, more: Mapping[str, str]) -> bytes:
+    """An answer with a body of a kind, after which the connection ends."""
+    fixed = {"Content-Type": f"{kind}; charset=utf-8", "Content-Length": str(len(body)), "Connection": "close"}
+    lines = [f"HTTP/1.1 {status.value} {status.phrase}"]
+    lines += [f"{name}: {value}" for name, value in {**fixed, **more}.items()]
+    return ("\r\n".join(lines) + "\r\n\r\n").encode() + body
 
 
 class Gate:
-    """A port that hands on to another one what may come in.
+    """A port that gives the page, and hands on to another one what else may come in.
 
     Args:
         host: Address to listen on.
         port: Port there; 0 for one that is free.
         inner: Port of viser, on loopback.
         token: What an address must have once as ``?token=``; None on loopback.
+        page: The page.
 
     Attributes:
         port: The port it listens on.
@@ -115,8 +126,9 @@ class Gate:
         InvalidSetting: The port is taken, or the host is not this machine's.
     """
 
-    def __init__(self, host: str, port: int, inner: int, token: str | None) -> None:
+    def __init__(self, host: str, port: int, inner: int, token: str | None, page: bytes) -> None:
         self._host, self._inner, self._token = host, inner, token
+        self._page = answer(HTTPStatus.OK, "text/html", page, {"Cache-Control": "no-store"})
         self.port, self.tabs = port, 0
         self._loop = asyncio.new_event_loop()
         self._end = asyncio.Event()
@@ -164,11 +176,16 @@ class Gate:
             head = await asyncio.wait_for(reader.readuntil(b"\r\n\r\n"), PATIENCE)
             request = Request.read(head)
             self.admit(request)
-            await self._hand_on(request, reader, writer)
+            if request.wants_page:
+                writer.write(self._page)
+            else:
+                await self._hand_on(request, reader, writer)
         except Refused as refused:
             writer.write(refused.answer())
         except (OSError, EOFError, ValueError, TimeoutError, asyncio.LimitOverrunError):
             pass  # gone, slow, or no HTTP
+        except asyncio.CancelledError:
+            pass  # the gate closes; asyncio would log a task that ends as cancelled
         finally:
             writer.close()
             with contextlib.suppress(OSError, asyncio.CancelledError):
@@ -208,7 +225,7 @@ class Gate:
         inner_reader, inner_writer = await asyncio.open_connection("127.0.0.1", self._inner)
         self.tabs += request.upgrades
         try:
-            inner_writer.write(request.to_page())
+            inner_writer.write(request.head())
             ways = [
                 asyncio.create_task(_carry(reader, inner_writer, MOST_SENT)),
                 asyncio.create_task(_carry(inner_reader, writer, None)),

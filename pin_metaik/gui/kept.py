@@ -10,7 +10,7 @@ from dataclasses import asdict, fields
 from typing import Any, TypeVar
 
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.files import known_keys
+from pin_metaik.files import json_values, known_keys
 from pin_metaik.gui.gate import STATE
 
 T = TypeVar("T")
@@ -56,10 +56,7 @@ def from_text(text: str | bytes, place: str) -> tuple[str, dict[str, dict[str, A
     """
     if len(text) > LARGEST:
         raise InvalidSetting(f"{place}: a state has at most {LARGEST // 2**20} MiB")
-    try:
-        content = json.loads(text)
-    except (ValueError, RecursionError) as reason:
-        raise InvalidSetting(f"{place} is not JSON: {reason}") from None
+    content = json_values(text, place, InvalidSetting)
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise InvalidSetting(f"{place} is no state of the toolbox: it has no format {FORMAT!r}")
     known_keys(content, place, InvalidSetting, KEYS)

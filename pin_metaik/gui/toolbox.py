@@ -15,6 +15,7 @@ from pin_metaik.arguments import checked
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.gui.gate import Gate, on_loopback
 from pin_metaik.gui.pages import PAGES
+from pin_metaik.gui.served import page_of
 from pin_metaik.gui.tab import Tab
 from pin_metaik.processes import Crew
 
@@ -44,7 +45,8 @@ class Toolbox:
             self._server = _Server(host="127.0.0.1", port=0, verbose=False)
         token = None if on_loopback(host) else secrets.token_urlsafe(16)
         try:
-            self._gate = Gate(host, port, self._server.get_port(), token)
+            inner = self._server.get_port()
+            self._gate = Gate(host, port, inner, token, page_of(inner))
         except InvalidSetting:
             self._server.stop()
             raise

@@ -39,7 +39,7 @@ def received(name: str, content: bytes, folder: Path, suffixes: tuple[str, ...])
     if suffix == ".zip":
         return _meant(_unpacked(plain, content, folder), plain, suffixes)
     if suffix not in suffixes:
-        raise InvalidSetting(f"{plain} is none of {', '.join(suffixes)}, or a .zip of them")
+        raise InvalidSetting(f"{plain} is neither one of {', '.join(suffixes)} nor a .zip of them")
     path = folder / plain
     path.write_bytes(content)
     return path

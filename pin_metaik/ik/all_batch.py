@@ -39,12 +39,12 @@ def solve_ik_all_batch(
     rng: Rng = None,
     watch: Watch | None = None,
 ) -> tuple[IKSolutions, ...]:
-    """Find all solutions of many targets, each as ``solve_ik_all`` does, which has the arguments and their errors.
+    """Find all solutions of many targets, each as by ``solve_ik_all``; see there for the arguments and errors.
 
     Args:
         chain: The joints to move and the frames to place.
         targets: Poses (k, 4, 4) or positions (k, 3), or a list of any targets.
-        q0: (nq,) configuration that the solutions of each are ordered by.
+        q0: (nq,) configuration by whose distance the solutions of each target are ordered.
         limit: See ``solve_ik_all``.
         apart: rad or m; see ``solve_ik_all``.
         solver: See ``solve_ik_all``.
@@ -60,7 +60,7 @@ def solve_ik_all_batch(
         The solutions of each target, in their order.
 
     Raises:
-        InvalidTarget: If there are no targets, or one of them is none; its number is named.
+        InvalidTarget: If there are no targets, or one of them is not valid; the message has its number.
         InvalidSetting: If ``workers`` is less than one, or as ``solve_ik_all`` says.
     """
     check_targets(targets, "there are no targets: give at least one")

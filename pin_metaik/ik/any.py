@@ -29,7 +29,7 @@ FIRST, GROWTH, ROUNDS = 500, 8, 12  # evaluations of a target in the first round
 
 @dataclass(frozen=True, eq=False)
 class IKChoice:
-    """Which of several targets is met, and how.
+    """Which of several targets is met, and by which configuration.
 
     Attributes:
         index: Number of the target that is met; None if none is.
@@ -83,10 +83,10 @@ def solve_ik_any(
 ) -> IKChoice:
     """Meet any of several targets, such as the grasps of an object.
 
-    Targets are tried by turns, each with a small budget, then those that are not decided with a larger one, up to the
-    solver's: a target that is hard to decide does not keep others from being met. The solver's ``select`` says which is
-    chosen: ``"first"`` is the first that is met, in the order of the list within a round; any other compares each
-    target's choice, among all targets that are met by the end of the first round in which any is.
+    In a first round all targets are tried with a small budget; in further rounds those that are not decided, with
+    larger ones, up to the solver's: so a target that is hard to decide does not delay others. The solver's ``select``
+    says which is chosen: ``"first"`` takes the first target that is met in a round, in the order of the list; any other
+    criterion compares the solutions of all targets that are met in the first round in which any is.
 
     Args:
         chain: The joints to move and the frame to place.
@@ -102,7 +102,7 @@ def solve_ik_any(
         The choice: check ``choice.success``, then ``choice.index`` and ``choice.result``.
 
     Raises:
-        InvalidTarget: If there are no targets, or one of them is none; its number is named.
+        InvalidTarget: If there are no targets, or one of them is not valid; the message has its number.
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
         InvalidSetting: If the world is another model's than the chain.
     """

@@ -47,10 +47,11 @@ class IKBatch:
         evaluations: (k,) forward kinematics computed.
         seconds: Time the whole batch took, s.
         chain: The chain.
-        targets: What was asked.
-        world: The world that nothing must collide in, if one was given. A pickle leaves it behind, as it has all meshes
-            in it.
-        contacts: What collides, the deepest first, by number of the target; of those that are met in collision only.
+        targets: The targets as they were given.
+        world: The world in which collisions were checked, if one was given. It is not pickled, because of all its
+            meshes.
+        contacts: By number of the target: the bodies that collide, deepest first. Only targets whose status is
+            ``IN_COLLISION`` have any.
     """
 
     q: NDArray[np.float64]
@@ -128,7 +129,7 @@ def solve_ik_batch(
             that were not decided by then have the status ``STOPPED``, and errors of NaN where nothing was tried.
 
     Raises:
-        InvalidTarget: If a target is none; its number is named.
+        InvalidTarget: If a target is not a valid one; the message has its number.
         InvalidConfiguration: If ``q0`` is not (nq,) or (k, nq), or not finite.
         InvalidSetting: If ``workers`` is less than one, or the world is another model's than the chain.
     """

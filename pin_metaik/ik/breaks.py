@@ -56,9 +56,9 @@ class PathBreak:
         index: Number of the pose.
         reason: Why.
         proof: What proves that the pose has no solution; None where nothing does.
-        contact: What collides at the pose, or first on the move to it.
-        joint: Name of the joint that steps the farthest, beyond its bound, and ``step``, how far (rad or m).
-        step: See ``joint``; 0 without one.
+        contact: The bodies that collide at the pose, or first on the move to it.
+        joint: Name of the joint whose step exceeds its bound the most.
+        step: The step of that joint, rad or m; 0 without one.
         move: The move from the pose before it, and where on it something collides.
     """
 

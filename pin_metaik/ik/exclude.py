@@ -1,4 +1,4 @@
-"""Boxes of configurations, by turns with the descents of a search: they prove that it is in vain, or help."""
+"""Exclusion of boxes of configurations, alternating with descents: a proof of no solution, or further starts."""
 
 from __future__ import annotations
 

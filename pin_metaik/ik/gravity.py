@@ -1,4 +1,4 @@
-"""What joints must hold against gravity, as a criterion for choosing among solutions."""
+"""Joint torques against gravity, as a criterion for choosing among solutions."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from pin_metaik.kinematics import Chain
 
 @checked
 def gravity_torque(chain: Chain, payload: float = 0.0, at: ArrayLike = (0.0, 0.0, 0.0)) -> Callable[[Array], float]:
-    """The size of the torques (N m) and forces (N) with which a chain's joints stand still: Pinocchio's g(q).
+    """The norm of the torques (N m) and forces (N) that hold a chain's joints against gravity: Pinocchio's g(q).
 
     Args:
-        chain: Whose joints count; the masses of the whole model do.
-        payload: kg, held by the chain's frame.
+        chain: The chain whose joints are counted; all masses of the model load them.
+        payload: Mass that the chain's frame holds, kg.
         at: (3,) its centre of mass in that frame, m.
 
     Returns:

@@ -1,4 +1,4 @@
-"""A sequence of poses with bounded joint steps, or the places where there is none, and why.
+"""One configuration for each of a sequence of poses, with bounded joint steps; where that is impossible, and why.
 
 Every pose gets a layer of solutions, and the best way through the layers is found. Where that has breaks, layers of
 poses that leave a choice are widened first: to other targets within their tolerances, and a little along self-motions.
@@ -40,18 +40,18 @@ class IKPath:
 
     Attributes:
         q: (k, nq) configurations; angles run on through whole turns where limits allow.
-        success: (k,) whether each pose is met, by Pinocchio.
+        success: (k,) whether each pose is met, by Pinocchio's forward kinematics.
         breaks: Numbers i of the poses that cannot be reached from pose i - 1: not within the step bound, or in a world
             not by a straight joint move that is proved free of collisions.
         longest_step: Largest step of any joint between poses without a break, rad or m.
         seconds: Time taken, s.
         chain: The chain.
         interrupted: Whether a watch ended it before every pose was looked at.
-        reasons: Why each pose that is not met is not, and each break: see ``PathBreak``.
-        moves: For breaks, if ``reconfigure`` asked for it and one was found: a joint move (p, nq) from pose i - 1 to
-            pose i, by i. Its straight parts keep inside the limits and are proved free in the world.
-        labels: The branch of each pose that is met, as ``IKSolutions.labels`` has it; empty texts elsewhere, and where
-            solutions are not separate.
+        reasons: One for each pose that is not met and for each break, with the reason: see ``PathBreak``.
+        moves: With ``reconfigure``, for each break i at which one was found: a joint move (p, nq) from pose i - 1 to
+            pose i. Its straight parts stay inside the limits and are proved free of collisions in the world.
+        labels: The branch of each pose that is met, named as in ``IKSolutions.labels``; an empty string for a pose that
+            is not met, and where the solutions form a continuum.
     """
 
     q: NDArray[np.float64]
@@ -67,7 +67,7 @@ class IKPath:
 
     @property
     def reconfigurations(self) -> tuple[Reconfiguration, ...]:
-        """Where the path changes its branch: at breaks, and through singularities between two poses without one."""
+        """Where the path changes its branch: at a break, or by passing a singularity between two poses."""
         met = np.flatnonzero(self.success).tolist()
         steps = [(a, b) for a, b in pairwise(met) if "" != self.labels[a] != self.labels[b] != ""]
         return tuple(Reconfiguration(b, self.labels[a], self.labels[b]) for a, b in steps)
@@ -83,7 +83,7 @@ class IKPath:
 
     @property
     def passable(self) -> bool:
-        """Whether every pose is met, and a joint move leads across every break."""
+        """Whether every pose is met, and ``moves`` has a joint move for every break."""
         return bool(self.success.all()) and set(self.breaks) <= self.moves.keys()
 
     @property
@@ -104,7 +104,7 @@ class IKPath:
         return self.chain.unwrapped(self.q)
 
     def timed(self, *, velocity: Share = None, acceleration: Share = None, jerk: Share = None) -> TimedPath:
-        """The path with times, so that the joints keep their limits at every time; see ``timing.time_path``.
+        """The path as a motion over time that is within the joints' limits at every instant; see ``timing.time_path``.
 
         Args:
             velocity: rad/s or m/s, one number or (n,) one a joint; default: the model's.
@@ -139,32 +139,35 @@ def solve_ik_path(
 ) -> IKPath:
     """Follow a sequence of poses without jumps, in a world without collisions at the poses and between them.
 
-    The middle of tolerances is aimed at. Only if the path would break, other targets within them are tried, and
-    solutions along the self-motions of a chain with more joints than the targets need; of one with one joint more, or
-    one free axis, all self-motions of the poses at the break, in a world every stretch of them that is free.
+    The path aims at the middle of the tolerances. Only where it would break are other poses within the tolerances tried
+    and, for a chain with more joints than the target needs, solutions along its self-motions. With one joint more than
+    needed, or one free axis, all self-motions of the poses at the break are used (in a world, all their intervals that
+    are free of collisions).
 
     Args:
         chain: The joints to move and the frame to place.
         targets: k targets, as for ``solve_ik``; close enough to each other for the step bound.
         q0: (nq,) configuration the path should start near, with the joints outside the chain and the locked ones where
             they stay; default: wherever the path as a whole is best, from the chain's reference.
-        max_step: Largest step of a joint from one pose to the next, rad or m: one number, or (n,) one a joint.
-        solver: Its refiner finds the solutions of each pose, with its budget of evaluations for one pose; where that
-            finds none, the solver searches for one. What it selects does not count: the way through all poses does.
-            Default: damped least squares, 10,000 evaluations a pose.
+        max_step: Largest step of a joint from one pose to the next, rad or m: one number, or (n,) with one for each
+            joint.
+        solver: Its refiner finds the solutions of each pose, with its budget of evaluations for each; where the refiner
+            finds none, the solver searches for one. Its ``select`` is not used: of the solutions of each pose, those
+            are taken that make the best path through all poses: with the fewest breaks, then the fewest changes of
+            branch, then the shortest. Default: damped least squares, 10,000 evaluations a pose.
         world: What must not collide at any of the poses and on the straight joint moves between them, which is proved
             (``CollisionWorld.clear_between``).
-        reconfigure: Whether to look, where the path breaks, for a joint move to the next pose: a straight one if that
-            is free, else, if OMPL is installed, a planned one. The path holds them as ``moves``.
+        reconfigure: Whether to look, where the path breaks, for a joint move to the next pose: the straight one if it
+            is free of collisions, otherwise, if OMPL is installed, a planned one. They are in ``IKPath.moves``.
         rng: Seed or generator; ``None`` is a fixed seed.
-        watch: Called with poses done and in all; True ends the path: the poses that follow are not met.
+        watch: Called with the number of poses done and of all poses; returning True ends the work, and the remaining
+            poses are not met.
 
     Returns:
-        The path. Where it is not continuous, ``breaks`` and ``success`` say where, ``reasons`` why: nothing jumps
-        silently.
+        The path. Where it is not continuous, ``breaks`` and ``success`` say where and ``reasons`` why.
 
     Raises:
-        InvalidTarget: If there are no targets, or one of them is none.
+        InvalidTarget: If there are no targets, or one of them is not valid.
         InvalidSetting: If ``max_step`` is not above zero, or the world is another model's than the chain.
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
     """

@@ -32,8 +32,8 @@ def save_arm(
 
     Raises:
         MissingExtra: matplotlib is not installed.
-        InvalidSetting: Its ending is none of a picture.
-        CannotWrite: It cannot be written.
+        InvalidSetting: The suffix is not one of a picture.
+        CannotWrite: The file cannot be written.
         InvalidConfiguration: A configuration of the wrong length.
     """
     file = picture_file(path)
@@ -50,14 +50,14 @@ def draw_arm(figure: Any, chain: Chain, q: ArrayLike, target: Any = None, world:
 
     Args:
         figure: An empty ``matplotlib.figure.Figure``.
-        chain: Its joints are thick and blue, other joints of the model grey.
+        chain: The chain; its links are drawn thick and blue, the others of the model grey.
         q: (nq,) the configuration.
         target: A position (3,) in m, or a pose as a ``pin.SE3`` or (4, 4), drawn beside the frame; or None.
-        world: Whose obstacles are drawn as the boxes around them; what is endless is left out.
+        world: World whose obstacles are drawn as their bounding boxes; planes and half spaces are left out.
 
     Raises:
         InvalidConfiguration: A configuration of the wrong length.
-        InvalidSetting: A target that is none.
+        InvalidSetting: The target is neither a pose nor a position.
     """
     model, data = chain.model, chain.model.createData()
     pin.framesForwardKinematics(model, data, array("q", q, model.nq, error=InvalidConfiguration))

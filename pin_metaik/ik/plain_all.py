@@ -24,6 +24,7 @@ from pin_metaik.kinematics import Chain
 ROOM = 0.1  # of the distance between distinct solutions: tolerances that may move a solution so far
 FORM, ROOTS = 8, 64  # solutions at most by a closed form, and by the roots of six joints
 ENOUGH = 10_000  # evaluations: more than descents from all roots take
+FOR_ROOTS = 20_000  # evaluations: more than it takes to find them
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -110,7 +111,7 @@ def _by_roots(
     six = chain._six_joints
     if six is None or (certify and six.degree != six.bound):
         return None
-    every = chain._configurations(pose)
+    every = chain._configurations(pose, FOR_ROOTS)
     if every is None or not every.all or (certify and not every.proved):
         return None
     out = np.empty((ROOTS, len(q)))

@@ -1,4 +1,4 @@
-"""An inverse-kinematics problem: the cost that is descended and the test that counts."""
+"""An inverse-kinematics problem: the cost that is minimised and the test that decides."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ EXACT = 1e-9  # m and rad
 
 
 class Verdict(NamedTuple):
-    """What Pinocchio and coal say of a configuration.
+    """A configuration judged by Pinocchio (errors, limits) and coal (collisions).
 
     Attributes:
         position_error: Of the worst frame, m.
         orientation_error: Of the worst frame, rad.
-        accepted: Whether all is as asked.
-        collides: Whether nothing is wrong but that it is in collision.
+        accepted: Whether it is a solution: within the tolerances, inside the limits and free of collisions.
+        collides: Whether it would be a solution if it were not in collision.
     """
 
     position_error: float
@@ -51,22 +51,23 @@ class Verdict(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class IKProblem:
-    """Targets for the frames of a chain, inside limits, and perhaps in a world full of obstacles.
+    """Targets for the frames of a chain, to be met inside its limits and, if a world is given, free of collisions.
 
-    Joints that the chain holds are where its reference has them, but for ``verdict`` and ``accepts``, which judge whole
-    configurations; ``problem.at(q)`` is the problem with those joints elsewhere.
+    Joints that are not coordinates of the chain have their values of its ``reference``, except in ``verdict`` and
+    ``accepts``, which judge whole configurations; ``problem.at(q)`` is the same problem with those joints at q.
 
     The residual is a sum over goals: those of the targets by compiled loops, then those of ``goals`` in Python.
 
     Attributes:
         chain: The chain.
         targets: One for each of its frames, in the chain's order.
-        records: (T, 26) the targets as the kernels take them; a radius as a tolerance is aimed at in its middle.
-        rows: (m, 2) the (frame, axis) pairs that count: three translations, three rotations, less the free ones.
-        world: What must not collide; ``None``: nothing is checked.
+        records: (T, 26) the targets as the kernels take them; they aim at the middle of each tolerance.
+        rows: (m, 2) the (frame, axis) pairs that count: three translations and three rotations, without the free axes.
+        world: The robot and obstacles that must not collide; ``None``: no collision is checked.
         goals: All other goals.
-        wishes: What is improved in the freedom that they leave.
-        base: (nq,) where goals and wishes have the joints that the chain does not move; None: at its reference.
+        wishes: Goals that are improved only as far as the others leave freedom (``Wish``).
+        base: (nq,) configuration from which goals and wishes take the joints that the chain does not move; None: the
+            chain's reference.
     """
 
     chain: Chain
@@ -89,8 +90,8 @@ class IKProblem:
             world: What must not collide.
 
         Raises:
-            InvalidTarget: If a target is none, a frame has none, or two that name no frame; if a goal's residual is not
-                (m,) finite numbers, or two goals contradict each other, as far as that is seen without a search.
+            InvalidTarget: If a target is not valid, a frame has no target, or two targets name no frame; if a goal's
+                residual is not (m,) finite numbers; or if two goals obviously contradict each other.
             FrameNotFound: If a target names a frame that is not the chain's.
             InvalidSetting: If the world's model is not the chain's.
             FixedFrame: If a goal is about a frame that the chain does not move.
@@ -134,10 +135,11 @@ class IKProblem:
 
     @cached_property
     def whole(self) -> IKProblem:
-        """The same problem aimed at all that is accepted: what is inside a tolerance is no error, nor cost.
+        """The same problem with zero error and cost everywhere inside the tolerances, instead of in their middle only.
 
-        An answer in the middle of the tolerances is a better one, and looked for first. Where the middle is out of
-        reach, descents towards it end at a compromise that may be outside; these end inside.
+        A solution in the middle of the tolerances is better, and is looked for first. Where the middle is out of reach,
+        a descent towards it ends at a compromise that may lie outside the tolerances; a descent on this problem does
+        not.
         """
         return replace(self, records=np.array([target.whole_record for target in self.targets]))
 
@@ -152,15 +154,15 @@ class IKProblem:
 
     @property
     def loose(self) -> bool:
-        """Whether a target allows more than the default tolerance: its edge may be reachable, its middle not."""
+        """Whether a target has more than the default tolerance: its edge may be reachable where its middle is not."""
         return any(target.loose for target in self.targets)
 
     def placed(self, x: NDArray[np.float64]) -> Placed:
-        """The robot at coordinates x (n,), as goals see it."""
+        """The robot at coordinates x (n,), as an argument for goals."""
         return Placed(self.chain, self.chain.q(x, self.base))
 
     def nearest_turns(self, X: NDArray[np.float64], x0: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Solutions X (k, n), each by whole turns nearest to x0 (n,), unless that loses a goal, such as a posture."""
+        """Solutions X (k, n), each moved by whole turns nearest to x0 (n,), unless a goal is then missed."""
         near = self.limits.nearest_turns(X, x0)
         if self.goals:
             lost = [not self.goals.met(self.placed(x)) for x in near]
@@ -179,13 +181,13 @@ class IKProblem:
 
     @cached_property
     def kernel_rows(self) -> NDArray[np.int64] | None:
-        """The rows as a descent takes them: None for one frame's whole pose without slack, which it is made for."""
+        """``rows`` for the compiled descent; None stands for its special case, the whole pose of one frame."""
         whole = len(self.targets) == 1 and not self.records[0, SLACK:WEIGHT].any()
         return None if whole else self.rows
 
     @cached_property
     def success_cost(self) -> float:
-        """A cost that is certainly within every tolerance; 0 where goals do not tell their tolerances."""
+        """A cost at which every tolerance is certainly met; 0 if a goal does not tell its tolerance."""
         return (
             0.0
             if self.goals
@@ -194,12 +196,12 @@ class IKProblem:
 
     @cached_property
     def gap(self) -> float:
-        """How far (m) the targets, or the wrists behind them, are proved to be out of reach; 0 proves nothing."""
+        """Lower bound (m) on how far the targets, or the wrists behind them, are out of reach; 0: nothing is proved."""
         return max(self._gap(t, oriented=math.isfinite(one.allowance[1])) for t, one in enumerate(self.targets))
 
     @checked
     def gaps(self, t: int) -> tuple[float, float]:
-        """How far (m) target number t is proved to be out of reach: the frame itself, and with its orientation."""
+        """Lower bounds (m) on how far target t is out of reach: by its position alone, and with its orientation."""
         self._frame(t)
         oriented = math.isfinite(self.targets[t].allowance[1])
         return self._gap(t, oriented=False), self._gap(t, oriented)
@@ -255,9 +257,10 @@ class IKProblem:
 
     @cached_property
     def proof(self) -> Proof | None:
-        """What the limits and the lengths of the links prove: that nothing meets the targets; None: nothing is proved.
+        """How limits and link lengths prove that no configuration meets the targets; None: they do not.
 
-        Of a chain that cannot move at all it is a proof only once it is seen that it does not stand at the targets.
+        For a chain whose joints cannot move, it is a proof only together with the check that its one configuration does
+        not meet the targets.
         """
         if self.limits.rigid:
             return Proof.LIMITS
@@ -271,15 +274,15 @@ class IKProblem:
 
     @cached_property
     def form_branches(self) -> Branches | None:
-        """The branches of the arm's closed form for all that the target of its whole pose accepts; None without one.
+        """The closed form's branches for all poses within the target's tolerances; None without a closed form.
 
-        Other goals make a solution of few of them, and have no closed form.
+        None also if there are other goals: few branches meet these, and they have no closed form.
         """
         return self.nominal_branches if len(self.chain.form) and not self.goals else None
 
     @cached_property
     def nominal_branches(self) -> Branches | None:
-        """The same of an arm that nearly has a closed form, with how far it is from it as a tolerance more."""
+        """The same for an arm that nearly has a closed form; how far it is from one is added to the tolerances."""
         proof, target = self.chain.nominal_proof, self.targets[0]
         if proof is None or not all(target.counts):
             return None
@@ -287,10 +290,10 @@ class IKProblem:
 
     @checked
     def boxes(self, t: int, *, least: float = TINY, split: bool = False) -> Boxes | None:
-        """All configurations, to be excluded for target number t; None, where that proves nothing or has no bounds.
+        """Boxes that cover all configurations, to be excluded for target t; None if no proof can come of them.
 
-        A target that frees a translation is looked at for its orientation alone; one that frees two turns, for its
-        position alone. ``least`` and ``split`` as for ``Chain._boxes``.
+        Of a target with a free translation only the orientation is used; of one with two free rotations only the
+        position. ``least`` and ``split`` as for ``Chain._boxes``.
         """
         self._frame(t)
         if not least > 0.0:
@@ -338,7 +341,7 @@ class IKProblem:
         return Verdict(position, orientation, accepted and not collides, collides)
 
     def outcomes(self, q: NDArray[np.float64]) -> tuple[tuple[Outcome, ...], tuple[Outcome, ...]]:
-        """What came of the goals that count, and of the wishes, at a configuration q (nq,)."""
+        """The outcome of each goal and of each wish at a configuration q (nq,)."""
         q = array("q", q, self.chain.model.nq, error=InvalidConfiguration)
         at, pairs = Placed(self.chain, q), zip(self.chain.frames, self.targets, strict=True)
         placed = [replace(target, frame=frame) for frame, target in pairs if target is not ANYWHERE]

@@ -1,4 +1,4 @@
-"""Means by which it is proved that nothing inside the limits meets a target."""
+"""Methods by which it is proved that no configuration inside the limits meets a target."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from enum import StrEnum
 
 
 class Proof(StrEnum):
-    """What proves that a target has no solution, or that no other one exists than those that were seen."""
+    """How it is proved that a target has no solution, or none but those that were found."""
 
     CONTACT = "CONTACT"
-    """What collides stands still, or is held by the target where it is: it collides in every solution."""
+    """The colliding bodies cannot move, or the target fixes where they are: they collide in every solution."""
     LIMITS = "LIMITS"
-    """No joint of the chain can move, and where it stands it does not meet the target."""
+    """No joint of the chain can move, and its only configuration does not meet the target."""
     REACH = "REACH"
     """The target is farther from, or nearer to, a joint than the links between can span."""
     CLOSED_FORM = "CLOSED_FORM"
-    """The branches of the arm's closed form, each judged for every pose within the tolerances."""
+    """Each branch of the arm's closed form, judged for every pose within the tolerances."""
     COUNT = "COUNT"
-    """As many separate configurations, real and complex, as six joints can have for a pose: no other one is left."""
+    """As many distinct real and complex configurations were found as six joints can have for a pose: no other."""
     BOXES = "BOXES"
-    """Boxes of configurations that cover the limits, each excluded by bounds on where it can take the frame."""
+    """Boxes that cover all configurations inside the limits, each excluded by bounds on where it places the frame."""

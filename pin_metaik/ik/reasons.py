@@ -55,8 +55,8 @@ def in_collision(proof: Proof | None, resolution: float | None) -> str:
     if proof is not None:
         return "every solution collides"
     if resolution is not None:
-        return f"met only in collision, at a resolution of {resolution:g} rad"
-    return "met only in collision, as far as was looked"
+        return f"every solution found collides, one in each box of half width {resolution:g} rad"
+    return "every solution found collides, but others may exist"
 
 
 def collisions(chain: Chain, world: CollisionWorld | None, contacts: Sequence[Contact]) -> str:

@@ -1,4 +1,4 @@
-"""What an inverse-kinematics search ended with, and why."""
+"""The result of an inverse-kinematics search, and the reason for its status."""
 
 from __future__ import annotations
 
@@ -35,33 +35,34 @@ class IKStatus(StrEnum):
     OUT_OF_TOLERANCE = "OUT_OF_TOLERANCE"
     """The budget of evaluations is spent and nothing found is close enough."""
     IN_COLLISION = "IN_COLLISION"
-    """The target is met only in collision."""
+    """The solutions found meet the target, but all of them collide."""
     STOPPED = "STOPPED"
-    """Time was up, or a watch ended a batch. Ctrl-C is no status: it goes through to the caller."""
+    """The budget of seconds was spent, or a watch ended a batch. Ctrl-C raises ``KeyboardInterrupt`` instead."""
 
 
 @dataclass(eq=False, slots=True)  # not frozen: that takes four times as long to make, a tenth of a quick solve
 class IKResult:
-    """The best configuration found. It is inside the limits whether the target is met or not.
+    """The best configuration found. It is inside the limits, whether the target is met or not.
 
     Attributes:
         q: (nq,) configuration.
         status: Why the search ended.
-        position_error: Distance to the target in m, by Pinocchio; the worst frame's; 0 when position is free.
-        orientation_error: Angle to the target in rad, by Pinocchio; the worst frame's; 0 when orientation is free.
+        position_error: Distance to the target in m, by Pinocchio; of the worst frame; 0 if the position is free.
+        orientation_error: Angle to the target in rad, by Pinocchio; of the worst frame; 0 if the orientation is free.
         evaluations: Forward kinematics computed, one a configuration.
         seconds: Time taken, s.
-        chain: The chain, with its held joints where ``q`` has them (``Chain.at``).
+        chain: The chain, with its held joints as in ``q`` (``Chain.at``).
         given: The target as it was given, or ``None``: see ``target``.
         trace: (g, 2) evaluations and best cost after each generation of the seeder, when asked for.
-        world: The world it must not collide in, if one was given. A pickle leaves it behind, as it has all meshes in
-            it: a result that comes out of one has ``None``, until a world is assigned.
+        world: The world in which collisions were checked, if one was given. It is not pickled, because of all its
+            meshes: an unpickled result has ``None`` until a world is assigned.
         contacts: What collides at ``q``, the deepest first, when the status is ``IN_COLLISION``.
-        proof: What proves that the target is out of reach, when the status is ``UNREACHABLE``; when it is
-            ``IN_COLLISION``, what proves that all solutions were looked at (see ``IKSolutions.complete``).
-        resolution: Of a chain with more joints than the target needs, ``IN_COLLISION``: half width (rad or m) of boxes
-            that cover all of its solutions, in each of which one was looked at; ``None``, if that was not done.
-        parts: A pose target as position and quaternion, which is cheaper than a copy of the SE3.
+        proof: With status ``UNREACHABLE``, how it is proved that the target is out of reach; with ``IN_COLLISION``, how
+            it is proved that every solution collides (see ``IKSolutions.complete``), or None.
+        resolution: With status ``IN_COLLISION``, for a chain with more joints than the target needs: half the width
+            (rad or m) of boxes that cover all solutions, one solution of each having been checked. ``None`` if that was
+            not done.
+        parts: A pose target as position and quaternion, which is cheaper than to copy the SE3.
     """
 
     q: NDArray[np.float64]
@@ -81,7 +82,7 @@ class IKResult:
 
     @property
     def target(self) -> Asked:
-        """What was asked: a pose as a ``pin.SE3``, anything else as it was given."""
+        """The target: a pose as a ``pin.SE3``, anything else as it was given."""
         if self.parts is None:
             return cast(Asked, self.given)
         return cast(pin.SE3, pin.XYZQUATToSE3(self.parts[0] + self.parts[1]))
@@ -113,22 +114,22 @@ class IKResult:
 
     @property
     def rank(self) -> int:
-        """Independent directions of the task that the chain can still move in at ``q``; fewer than asked: singular."""
+        """Rank of the target's Jacobian at ``q``; if it is less than its number of rows, ``q`` is singular."""
         return rank(self.problem.linearize(self.x)[1])
 
     @property
     def label(self) -> str:
-        """The branch that ``q`` is on, as ``IKSolutions.labels`` has it; empty where solutions are not separate."""
+        """The branch of ``q``, named as in ``IKSolutions.labels``; empty where the solutions form a continuum."""
         return "".join(labels_of(self.problem, self.x[None]))
 
     @property
     def goals(self) -> tuple[Outcome, ...]:
-        """What came of each goal: whether it is met at ``q``, and how far that is from it."""
+        """The outcome of each goal: whether it is met at ``q``, and by how much it is missed."""
         return self.problem.outcomes(self.q)[0]
 
     @property
     def wishes(self) -> tuple[Outcome, ...]:
-        """What came of each wish."""
+        """The outcome of each wish."""
         return self.problem.outcomes(self.q)[1]
 
     @property
@@ -160,14 +161,14 @@ class IKResult:
         return f"the nearest is {away}{stuck}{lost}"
 
     def verify(self) -> bool:
-        """Judge ``q`` again by Pinocchio and the limits, and by coal in the world as it is now.
+        """Judge ``q`` again: errors by Pinocchio, the limits, and collisions by coal in the world as it is now.
 
-        Without its world, after it was pickled, what collided still counts.
+        An unpickled result, which has no world, counts its stored ``contacts`` as collisions.
         """
         return self.problem.accepts(self.q) and not (self.world is None and self.contacts)
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain values, for JSON, in m and rad; q is whole, ``joints`` are the chain's coordinates by name."""
+        """Plain values, for JSON, in m and rad; ``joints`` are the chain's coordinates by name."""
         names = (
             "status",
             "success",

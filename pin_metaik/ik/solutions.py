@@ -19,7 +19,7 @@ from pin_metaik.ik.collect import collect
 from pin_metaik.ik.criteria import Selection, measure_of
 from pin_metaik.ik.goals.pose import Target
 from pin_metaik.ik.labels import labels_of
-from pin_metaik.ik.plain_all import ENOUGH, ROOTS, all_of_plain
+from pin_metaik.ik.plain_all import ENOUGH, FOR_ROOTS, ROOTS, all_of_plain
 from pin_metaik.ik.problem import Asked, IKProblem, check_world
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.result import Parts
@@ -48,17 +48,17 @@ class IKSolutions:
 
     Attributes:
         q: (s, nq) configurations, each judged by Pinocchio, and in a world by coal.
-        complete: What proves that these are all, each to within the distance between distinct solutions: the branches
-            of the arm's closed form, the number of its configurations, real and complex, or boxes that cover all
-            configurations; ``None`` where nothing does, as on a chain with more joints than its target needs, in a
-            singularity, or where tolerances leave room for more than one answer. What meets the tolerances but not the
-            pose exactly counts only where nothing near it does.
+        complete: How it is proved that no solution is missing that is farther than ``apart`` from all of these: by the
+            branches of the arm's closed form, by the number of its real and complex configurations, or by boxes that
+            cover all configurations. ``None`` without a proof, as for a chain with more joints than the target needs,
+            in a singularity, or where the tolerances admit more than one solution close by. A configuration that meets
+            the tolerances but not the exact pose counts as a solution only where none near it meets the pose.
         evaluations: Forward kinematics computed.
         seconds: Time taken, s.
-        chain: The chain, with its held joints where the start has them.
-        given: What was asked; a pose as position and quaternion, which is cheaper than a copy: see ``problem``.
-        world: The world they must not collide in, if one was given. A pickle leaves it behind, as it has all meshes in
-            it.
+        chain: The chain, with its held joints as in the start.
+        given: The target; a pose as position and quaternion, which is cheaper than a copy: see ``problem``.
+        world: The world in which collisions were checked, if one was given. It is not pickled, because of all its
+            meshes.
         interrupted: Whether a watch ended the search.
     """
 
@@ -90,8 +90,8 @@ class IKSolutions:
     def curves(self) -> tuple[SelfMotionCurve, ...]:
         """All self-motions of a chain with one spare coordinate, the longest first; found when first asked for.
 
-        See ``self_motions``, which also says whether they are proved to be all, and takes a resolution and a budget.
-        There are none where solutions are separate, or have more than one degree of freedom: those are sampled in q.
+        ``self_motions`` takes a resolution and a budget, and says whether it is proved that none is missing. Empty
+        where the solutions are isolated, and where they have more than one degree of freedom: then ``q`` samples them.
         """
         problem = replace(self.problem.exact, world=None)
         if not has_curves(problem):
@@ -107,9 +107,10 @@ class IKSolutions:
     def labels(self) -> tuple[str, ...]:
         """The branch that each solution is on, such as "shoulder + elbow - wrist +".
 
-        It stays the same from pose to pose along any motion that crosses no singularity: it has the signs of what
-        vanishes in them, of arms with a closed form three factors, of other chains with separate solutions the
-        determinant of the Jacobian, which several solutions share. Empty where solutions are not separate.
+        A label does not change along a motion that crosses no singularity, because it consists of signs of quantities
+        that vanish only there: for an arm with a closed form, of three factors of its determinant; for another chain
+        with isolated solutions, of the determinant of its Jacobian, so that several solutions share a label. Empty
+        where the solutions form a continuum.
         """
         return labels_of(self.problem, self.x)
 
@@ -169,28 +170,30 @@ def solve_ik_all(
     rng: Rng = None,
     watch: Watch | None = None,
 ) -> IKSolutions:
-    """Find all distinct solutions of a target, and prove that there are no others where that can be had.
+    """Find all distinct solutions of a target, and prove where possible that there are no others.
 
-    Solutions that differ by whole turns count as one and come as the copy nearest to ``q0``. Descents start from what a
-    closed form says, if the arm has one, and from all configurations of six coordinates, real and complex, which are
-    found by elimination and continuation. Otherwise, and where some of these are missing, as in singularities, they
-    start from an atlas of the chain, from random configurations, and from the solutions known with one joint turned
-    half round, until no new one appears. Then, on chains of six coordinates and fewer, boxes of configurations are
-    looked at for what may be missing, unless counting has proved that nothing is.
+    Solutions that differ by whole turns count as one; the copy nearest to ``q0`` is given. Descents start from the
+    branches of the closed form, if the arm has one, or, with six coordinates, from all its real and complex
+    configurations, found by elimination and continuation. For other chains, and where some of these are missing, as in
+    singularities, they start from sampled configurations, from random ones, and from known solutions with one joint
+    turned by half a turn, until no new solution appears. Then, for chains of up to six coordinates, boxes of
+    configurations are searched for missing solutions, unless the count of configurations has proved that none is
+    missing.
 
     Args:
         chain: The joints to move and the frames to place.
         target: As for ``solve_ik``.
-        q0: (nq,) configuration the solutions are ordered by, and that has the joints outside the chain and the locked
-            ones; default: the chain's reference.
-        limit: Solutions to stop at; what ends the search on redundant chains.
-        apart: rad or m by which some coordinate of two solutions must differ.
-        solver: Whose refiner descends; default ``IKSolver()``. Of a solver, nothing else is used here.
+        q0: (nq,) configuration by whose distance the solutions are ordered; it also gives the values of joints outside
+            the chain and of locked ones. Default: the chain's reference.
+        limit: Number of solutions at which the search stops; on redundant chains this is what ends it.
+        apart: Distinct solutions differ in some coordinate by more than this, rad or m.
+        solver: Only its refiner is used, for the descents; default ``IKSolver()``.
         budget: Evaluations (and seconds, which are not reproducible) that may be spent.
-        certify: Whether boxes may be looked at to prove that no solution is missing, which takes milliseconds.
-        world: What must not collide: solutions that do are left out, after they have counted towards the limit.
+        certify: Whether boxes may be used to prove that no solution is missing, which takes milliseconds.
+        world: World in which nothing must collide: solutions that do are left out, but count towards ``limit``.
         rng: Seed or generator; ``None`` is a fixed seed.
-        watch: Called between batches of descents with evaluations spent and allowed; True ends the search.
+        watch: Called between batches of descents with the evaluations spent and allowed; returning True ends the
+            search.
 
     Raises:
         InvalidTarget: If the target is not a pose, position or orientation.
@@ -208,7 +211,7 @@ def solve_ik_all(
         raise InvalidSetting("all solutions are found by a refiner: give the solver one, e.g. IKSolver(refiner='dls')")
     began = perf_counter()
     chain = chain if q0 is None else chain.at(q0)
-    if limit >= ROOTS and budget.seconds is None and budget.evaluations >= ENOUGH and watch is None:
+    if limit >= ROOTS and budget.seconds is None and budget.evaluations >= ENOUGH + FOR_ROOTS and watch is None:
         plain = all_of_plain(chain, target, q0, solver.descent, apart, certify)
         if plain is not None:
             q = plain.q

@@ -23,32 +23,33 @@ def solve_ik(
     world: CollisionWorld | None = None,
     rng: Rng = None,
 ) -> IKResult:
-    """Find a configuration that places the chain's frames where they shall be.
+    """Find a configuration at which the chain's frames are at their targets, or prove that there is none.
 
     Args:
         chain: The joints to move and the frames to place.
         target: World pose of the chain's frame (``pin.SE3`` or 4x4), a position (3,) in m, a ``Target``, or one
-            ``Target`` for each frame of a chain that has several; or a list with any goals, which are met together,
-            and wishes, which are improved in the freedom that they leave (see ``pin_metaik.goals``).
-        q0: (nq,) configuration to start from; joints outside the chain, and locked ones, are where it has them, in the
-            search and in the answer. An arm with a closed form stays on the branch that it is on (shoulder, elbow and
-            wrist), if that has a solution. Default: the chain's reference.
+            ``Target`` for each frame of a chain that has several; or a list of any goals, which are met together, and
+            wishes, which are improved only as far as the goals leave freedom (see ``pin_metaik.goals``).
+        q0: (nq,) configuration to start from. Joints outside the chain and locked ones keep its values in the search
+            and in the answer. An arm with a closed form stays on the branch of ``q0`` (shoulder, elbow and wrist), if
+            that branch has a solution. Default: the chain's reference.
         solver: How to search; default ``IKSolver()``.
-        world: What must not collide: the robot with itself, with what it holds, and with obstacles. Where the
-            solver's solution does, others are searched for with its refiner (damped least squares if it has none), by
-            pushing them out of collision, and by its seeder.
+        world: The world in which nothing must collide: the robot with itself, with objects it holds, and with
+            obstacles. If the solver's solution collides, others are searched for with its refiner (damped least squares
+            if it has none), by pushing them out of collision, and by its seeder.
         rng: Seed or generator of every random choice; ``None`` is a fixed seed, so that the same call gives the same
-            answer. A generator gives one number as the seed: it is one draw on, however hard the target is.
+            answer. From a generator one number is drawn as the seed, however hard the target is.
 
     Returns:
-        The result: check ``result.success``. A target out of reach is a result too, with the nearest pose found:
-        ``UNREACHABLE`` is proved (``result.proof``), for whole poses, positions, orientations and free axes, mimic
-        joints and several frames, each by itself. Nothing is proved by other goals, nor of slides without limits, and
-        little of nine joints and more, or within some ten tolerances of what is reachable.
+        The result: check ``result.success``. A target out of reach raises nothing: its result has the nearest pose
+        found. The status ``UNREACHABLE`` is always proved (``result.proof``). It can be proved for whole poses,
+        positions, orientations and targets with free axes, also with mimic joints; of several frames each is looked at
+        by itself. Nothing is proved from other goals, nor for sliding joints without limits, and little for nine joints
+        and more or within some ten tolerances of the reachable poses.
 
     Raises:
         InvalidTarget: If the target is not a pose, position, orientation or goal, or a goal does not give numbers.
-        FrameNotFound: If a target or a goal names a frame that there is not.
+        FrameNotFound: If a target or a goal names a frame that does not exist.
         FixedFrame: If a goal is about a frame that the chain does not move.
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
         InvalidBounds: If a joint of the chain has no finite range to search in.

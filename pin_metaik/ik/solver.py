@@ -48,31 +48,34 @@ RESERVE = 0.05  # of the budget, to settle down at the nearest pose when none is
 @checked
 @dataclass(frozen=True)
 class IKSolver:
-    """How to search: where starts come from, what refines them, and how much may be spent.
+    """How to search: where starts come from, which refiner improves them, and the budget.
 
-    ``IKSolver()`` is what to use without thinking: damped least squares from ``q0`` and then from random starts, by
-    turns with boxes that prove that there is nothing to be found, and in the end metaheuristic seeds. Others prove
-    nothing but what the links' span does. ``IKSolver(seeder=None, starts=1)`` is the classical
-    Jacobian method, ``IKSolver("gwo", None)`` the pure metaheuristic, ``IKSolver("gwo", "dls")`` the hybrid.
+    ``IKSolver()``, the default, suits most uses: damped least squares from ``q0`` and then from random starts,
+    alternating with a search that excludes boxes of configurations to prove that no solution exists, and at the end
+    from seeds of a metaheuristic. Other seeders prove unreachability only by the lengths of the links.
+    ``IKSolver(seeder=None, starts=1)`` is the classical Jacobian method, ``IKSolver("gwo", None)`` the pure
+    metaheuristic, ``IKSolver("gwo", "dls")`` the hybrid.
 
     Attributes:
         seeder: ``"auto"``, a metaheuristic's name or object, or ``None``: ``q0`` and random starts only.
         refiner: A refiner's name or object, or ``None``: the seeder's best is the answer.
-        budget: Evaluations are forward kinematics, one a configuration (a refiner's step is one, its Jacobian comes
-            with it), and boxes of configurations, which take about as long. A budget in seconds is looked at every few
-            milliseconds, and not reproducible. ``target`` is the cost at which a pure metaheuristic stops; by default
-            it stops once the tolerances are met.
+        budget: An evaluation is one forward kinematics (a step of a refiner, with its Jacobian, is one) or one box of
+            configurations, which takes about as long. A budget in seconds is checked every few milliseconds; its
+            results are not reproducible. ``target`` is the cost at which a pure metaheuristic stops; by default it
+            stops once the tolerances are met.
         starts: How many starts to refine without a seeder; ``None``: until the budget is spent.
-        select: ``"first"`` solution found, or of all distinct ones that the budget allows to find, the ``"nearest"`` to
-            ``q0``, the one of best ``"manipulability"``, the one that keeps farthest from the ``"limits"``, the one
-            held with the least ``"torque"`` against gravity, the one with the most ``"clearance"`` in its world, or the
-            one for which a function of your own, of a configuration q (nq,), gives the lowest number. Joints need not
-            count alike: ``Weighted("nearest", {"elbow_joint": 3.0})``. With one spare joint and no world it is the best
-            of all self-motions (see ``self_motions``), where these are proved to be all.
-        trace: Whether to keep the seeder's convergence.
-        patience: Evaluations after which the automatic search ends although nothing is proved, or a tenth of the
-            budget, if that is more; the rest of the budget is for boxes (see ``Proof``). Of 13.7 million targets with a
-            solution none needed more than 25,000; 3,000 miss 1 of 2,500,000 random ones, and 2 of 10,000 singular ones.
+        select: The ``"first"`` solution found, or the best of all distinct solutions that the budget allows to find:
+            the ``"nearest"`` to ``q0``, the one of greatest ``"manipulability"``, the one farthest from the
+            ``"limits"``, the one that needs the least ``"torque"`` against gravity, the one with the most
+            ``"clearance"`` in its world, or the one for which your own function of a configuration q (nq,) gives the
+            lowest number. ``Weighted("nearest", {"elbow_joint": 3.0})`` weights joints differently. With one spare
+            joint and no world it is the best point of all self-motions, if ``self_motions`` proves that it has found
+            them all.
+        trace: Whether to keep the convergence of the seeder in ``IKResult.trace``.
+        patience: Evaluations after which the automatic search for a solution ends without a proof (or a tenth of the
+            budget, if that is more); the rest of the budget is for boxes (see ``Proof``). Of 13.7 million targets with
+            a solution none needed more than 25,000; 3,000 miss 1 of 2,500,000 random ones, and 2 of 10,000 singular
+            ones.
     """
 
     seeder: str | Metaheuristic | None = "auto"
@@ -100,7 +103,7 @@ class IKSolver:
         if descent is None and (seeder is None or self.seeder == "auto"):
             raise InvalidSetting("without a refiner name a seeder, e.g. IKSolver('gwo', None)")
         if descent is None and measure is not None:
-            raise InvalidSetting("to choose among solutions takes a refiner, e.g. IKSolver('gwo', 'dls', select=...)")
+            raise InvalidSetting("select needs a refiner, e.g. IKSolver('gwo', 'dls', select=...)")
         object.__setattr__(self, "_seeder", seeder)
         object.__setattr__(self, "_descent", descent)
         object.__setattr__(self, "_measure", measure)
@@ -112,12 +115,12 @@ class IKSolver:
 
     @property
     def descent(self) -> Descent:
-        """How its refiner descends; that of damped least squares for a solver without a refiner."""
+        """The compiled loops of its refiner; those of damped least squares if it has no refiner."""
         return DLS().descent() if self._descent is None else self._descent
 
     @checked
     def solve(self, problem: IKProblem, q0: ArrayLike | None = None, rng: Rng = None) -> IKResult:
-        """Solve a problem, in its world if it has one: what ``solve_ik`` does, which has the arguments and errors."""
+        """Solve a problem, in its world if it has one, as ``solve_ik`` does; see there for arguments and errors."""
         problem, seed = problem if q0 is None else problem.at(q0), as_seed(rng)
         first = None
         if len(problem.targets) == 1 and not problem.goals and not problem.wishes:
@@ -142,25 +145,26 @@ class IKSolver:
     def search(
         self, problem: IKProblem, q0: ArrayLike | None = None, rng: Rng = None, *, first: Refinement | None = None
     ) -> IKResult:
-        """Search until the targets are met or the budget is spent, each evaluation being counted.
+        """Search until the targets are met or the budget is spent.
 
-        This is the search alone, as comparisons take it: it ends with a solution that collides in the problem's world.
+        This is the search alone, which ``compare`` uses: it also ends with a solution that collides in the problem's
+        world.
 
         Args:
             problem: What is searched for.
             q0: (nq,) configuration to start from; see ``solve_ik``.
             rng: Seed or generator; a generator is drawn from for every start.
-            first: What the pose solver came to, if it has tried the first starts already.
+            first: The best result of the pose solver, if that has already tried the first starts.
 
         Raises:
-            InvalidSetting: If there are wishes, and no refiner to improve them with.
+            InvalidSetting: If there are wishes, but no refiner to improve them.
         """
         began = perf_counter()
         instance(IKProblem, problem=problem)
         if first is not None:
             instance(Refinement, first=first)
         if self._descent is None and problem.wishes:
-            raise InvalidSetting("wishes take a refiner, e.g. IKSolver('gwo', 'dls')")
+            raise InvalidSetting("wishes need a refiner, e.g. IKSolver('gwo', 'dls')")
         if self.select == "clearance":
             world_of(problem)
         if q0 is not None:
@@ -264,7 +268,7 @@ class IKSolver:
 
     @cached_property
     def kernel_settings(self) -> NDArray[np.float64] | None:
-        """Settings (9,) of the pose solver, with the default tolerances, if it can take this solver's first step.
+        """Settings (9,) of the compiled pose solver, with the default tolerances; None if it cannot begin this search.
 
         That is the automatic solver's: it restarts its refiner until a share of the budget is spent.
         """

@@ -75,26 +75,27 @@ class PoseSolver(NamedTuple):
 
 @checked
 class Chain:
-    """The joints on the way to one or several frames of a ``pin.Model``, as n coordinates with limits.
+    """The joints that move one or several frames of a ``pin.Model``, as n coordinates with limits.
 
-    A coordinate is a revolute, prismatic, continuous or helical joint, or one of the turns and slides of a joint with
-    several: a floating base is ``root_joint.x``, ``.y``, ``.z``, ``.yaw``, ``.pitch`` and ``.roll``. Joints that mimic
-    another follow it; everything else is held. ``paths``, ``poses``, ``reach``, ``sample_table`` and ``branches`` are
-    valid for the held joints at ``reference``; ``at(q)`` is the same chain with the held joints at q, and solvers work
-    on that one. The model is read, never written to.
+    A coordinate is a revolute, prismatic, continuous or helical joint, or one degree of freedom of a joint with
+    several: a floating base is ``root_joint.x``, ``.y``, ``.z``, ``.yaw``, ``.pitch`` and ``.roll``. Mimic joints
+    follow theirs; all other joints are held. ``paths``, ``poses``, ``reach``, ``sample_table`` and ``branches`` are
+    valid with the held joints at ``reference``; ``at(q)`` is the same chain with the held joints at q, which is the one
+    that solvers use. The model is never written to.
 
     Attributes:
         model: The model.
         frames: Names of the T frames.
-        names: Names of the n coordinates: the joint's, and of a joint with several which of them.
+        names: Names of the n coordinates: that of the joint and, if it has several, of its degree of freedom.
         limits: Their limits.
         reference: (nq,) the configuration that joints outside the chain are held at.
-        held: Entries of a configuration that place the frames but are no coordinates: those of joints on the way that
-            are locked, or follow a locked one. Mostly there are none.
-        has_pose_solver: Whether it has one frame, and can move: then there is a ``pose_solver``.
-        movers: Ids of all joints of the model that move with the coordinates, those that mimic one included.
-        paths: The joints as arrays.
-        kernels: The compiled loops, which take the chain as a ``block``.
+        held: Indices into q of joints that move the frames but are not coordinates, because they are locked or follow a
+            locked joint; usually empty.
+        has_pose_solver: Whether ``pose_solver`` exists: it does for a chain with one frame and at least one joint that
+            can move.
+        movers: Ids of all joints of the model that the coordinates move, mimic joints included.
+        paths: The joints from the base to each frame, as arrays.
+        kernels: The compiled functions, which take the chain as its ``block``.
         tip: Pinocchio's placement of the first frame.
     """
 
@@ -195,9 +196,9 @@ class Chain:
         self._proof_arms: dict[tuple[int, Free], ProofArm | None] = {}
 
     def at(self, q: ArrayLike) -> Chain:
-        """The same chain with its held joints where q (nq,) has them; this one, if they are there already.
+        """The same chain with its held joints as in q (nq,); itself, if they are already so.
 
-        A few of them are kept, and come back when asked for again.
+        The last few of these chains are cached.
 
         Raises:
             InvalidConfiguration: If q is not a configuration of the model.
@@ -229,7 +230,7 @@ class Chain:
 
     @property
     def data(self) -> pin.Data:
-        """Pinocchio's scratch for this model, one a thread."""
+        """A ``pin.Data`` of this model for the calling thread."""
         return self._own.data
 
     def __reduce__(self) -> tuple[object, ...]:
@@ -265,13 +266,13 @@ class Chain:
         return self.coordinates.read(self._like("q", q))
 
     def unwrapped(self, Q: ArrayLike) -> NDArray[np.float64]:
-        """Coordinates (k, n) of configurations Q (k, nq) in a row; continuous joints run on through whole turns."""
+        """Coordinates (k, n) of a sequence of configurations Q (k, nq); angles of continuous joints are unwrapped."""
         x, periodic = self.x(array("Q", Q, "k", self.model.nq, error=InvalidConfiguration)), self.limits.periodic
         x[:, periodic] = np.unwrap(x[:, periodic], axis=0)
         return x
 
     def configuration(self, q: ArrayLike) -> NDArray[np.float64]:
-        """A configuration (nq,) of the caller: checked, and with every joint brought inside its limits.
+        """A configuration (nq,) as given, checked, and with every joint moved inside its limits.
 
         Raises:
             InvalidConfiguration: If its length is not nq, an entry is not finite, or a quaternion has not length 1.
@@ -283,17 +284,28 @@ class Chain:
         return inside
 
     def tangent(self, x: ArrayLike) -> NDArray[np.float64]:
-        """(nv, n) Pinocchio's velocity per velocity of each coordinate at x (n,), by which a Jacobian is multiplied."""
-        x, model = array("x", x, self.n, error=InvalidConfiguration), self.model
-        T = np.zeros((model.nv, self.n))
-        for joint, column in self.coordinates.columns.items():
-            kind = model.joints[joint]
-            own = slice(column, column + kind.nv)
-            T[kind.idx_v : kind.idx_v + kind.nv, own] = velocities(kind, x[own])
+        """(nv, n) derivative of Pinocchio's velocity v by the velocities of the coordinates, at x (n,)."""
+        x = array("x", x, self.n, error=InvalidConfiguration)
+        constant, varying = self._tangents
+        T = constant.copy()
+        for kind, rows, columns in varying:
+            T[rows, columns] = velocities(kind, x[columns])
         return T
 
+    @cached_property
+    def _tangents(self) -> tuple[NDArray[np.float64], list[tuple[pin.JointModel, slice, slice]]]:
+        """(nv, n) the part of ``tangent`` that does not depend on x, and the joints with several coordinates."""
+        constant, varying = np.zeros((self.model.nv, self.n)), []
+        for joint, column in self.coordinates.columns.items():
+            kind = self.model.joints[joint]
+            if kind.nv == 1:
+                constant[kind.idx_v, column] = 1.0
+            else:
+                varying.append((kind, slice(kind.idx_v, kind.idx_v + kind.nv), slice(column, column + kind.nv)))
+        return constant, varying
+
     def keeps_limits(self, q: NDArray[np.float64]) -> bool:
-        """Whether q (nq,) is inside the limits; an angle read from a cosine or a quaternion, to within 1e-12 rad."""
+        """Whether q (nq,) is inside the limits; angles stored as cosine and sine or quaternion to within 1e-12 rad."""
         x, rounding = self.coordinates.read(self._like("q", q, (self.model.nq,))), self.coordinates.rounding
         if rounding is None:
             return self.limits.contains(x)
@@ -301,7 +313,7 @@ class Chain:
         return bool(((limits.lower - rounding <= x) & (x <= limits.upper + rounding)).all())
 
     def inside(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The nearest configurations inside the limits to q (..., nq); pairs and quaternions are left alone."""
+        """q (..., nq) clipped to the limits; angles stored as cosine and sine, and quaternions, are left unchanged."""
         return np.minimum(np.maximum(self._like("q", q), self._least), self._most)
 
     def _like(self, name: str, q: ArrayLike, shape: tuple[int, ...] | None = None) -> NDArray[np.float64]:
@@ -320,9 +332,9 @@ class Chain:
 
     @cached_property
     def sample_table(self) -> SampleTable:
-        """Sampled configurations to look a pose up in; made on first use, in about 5 ms, always the same.
+        """Sampled configurations to look up starts by pose; made on first use in about 5 ms, always the same.
 
-        Where held joints only move the chain as a whole, as those before the first one of it do, its table is moved.
+        Where held joints only move the chain as a whole, being before its first joint, the same table is transformed.
         """
         if self._moves is not None:
             return self._original.sample_table.moved(self._moves)
@@ -336,12 +348,12 @@ class Chain:
 
     @cached_property
     def form_proof(self) -> ClosedFormProof | None:
-        """What decides by the arm's closed form whether it reaches a pose; None, if it has none."""
+        """The decision by the arm's closed form whether it reaches a pose; None if it has no closed form."""
         return ClosedFormProof.of(self.form, self.paths, self.limits) if len(self.form) else None
 
     @cached_property
     def nominal_proof(self) -> ClosedFormProof | None:
-        """The same by the closed form of the nominal arm, of which this one is a slightly displaced copy."""
+        """The same by the closed form of the nominal arm, from which this (calibrated) arm differs a little."""
         if len(self.form):
             return self.form_proof
         nominal = closed_form(self.paths, NOMINAL)
@@ -352,11 +364,14 @@ class Chain:
         """What finds all configurations for a pose, real and complex; made on first use, in about 0.1 s."""
         return six_joints(self.paths)
 
-    def _configurations(self, pose: NDArray[np.float64]) -> Configurations | None:
-        """All configurations for a world pose (4, 4) of the frame; None, if this is no chain of six of one frame."""
+    def _configurations(self, pose: NDArray[np.float64], most: int) -> Configurations | None:
+        """All configurations for a world pose (4, 4) of the frame; None, if this is no chain of six of one frame.
+
+        They are those that ``most`` evaluations find.
+        """
         if self._moves is not None:
-            return self._original._configurations(np.linalg.inv(self._moves[0]) @ pose)
-        return None if self._six_joints is None else self._six_joints.at(pose)
+            return self._original._configurations(np.linalg.inv(self._moves[0]) @ pose, most)
+        return None if self._six_joints is None else self._six_joints.at(pose, most)
 
     def _boxes(
         self,
@@ -391,9 +406,9 @@ class Chain:
         return None if arm is None else Boxes(arm.split if split else arm, pose, near, aligned, least, begin)
 
     def branches(self, pose: NDArray[np.float64], x0: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Coordinates (b, n) that an arm's closed form has for a pose (4, 4), the branch that x0 (n,) is on first.
+        """Coordinates (b, n) of the branches of the arm's closed form for a pose (4, 4), the branch of x0 (n,) first.
 
-        Where a joint does not matter, in a singularity, it stays as in x0. Without a closed form there are none.
+        A joint that a singularity leaves undetermined keeps its value in x0. Empty, (0, n), without a closed form.
         """
         pose, x0 = array("pose", pose, 4, 4, error=InvalidTarget), array("x0", x0, self.n, error=InvalidConfiguration)
         out = np.empty((8, self.n))
@@ -410,12 +425,12 @@ class Chain:
 
     @cached_property
     def bare(self) -> Floats:
-        """The chain as the compiled loops take it, without samples: one block of numbers; see ``kernel.layout``."""
+        """The chain as one array for the compiled functions, without samples; see ``kernel.layout``."""
         return self._packed(np.zeros(REACH), np.zeros((0, 3)), no_samples(self.n, len(self.frames)))
 
     @cached_property
     def block(self) -> Floats:
-        """The same with the sample table, and what bounds the reach of a chain with one frame and solves it."""
+        """The same with the sample table and, for one frame, the bounds of its reach and its closed form."""
         samples = self.sample_table.samples  # first of all: it says so where a joint has no limits
         reach = self.reach(0, oriented=True).array if self.has_pose_solver else np.zeros(REACH)
         return self._packed(reach, self.form, samples)
@@ -426,12 +441,12 @@ class Chain:
 
     @cached_property
     def pose_solver(self) -> PoseSolver:
-        """The compiled solver of a chain with one frame, for whole poses."""
+        """The compiled solver for whole poses of a chain with one frame."""
         return self._solver(self.block, oriented=True)
 
     @cached_property
     def position_solver(self) -> PoseSolver:
-        """The same for positions at any orientation."""
+        """The compiled solver for positions at any orientation."""
         samples = self.sample_table.samples
         block = self._packed(self.reach(0, oriented=False).array, self.form, samples)
         return self._solver(block, oriented=False)
@@ -447,7 +462,7 @@ class Chain:
         )
 
     def sample(self, count: int, seed: tuple[int, ...]) -> NDArray[np.float64]:
-        """Coordinates (count, n) drawn uniformly from the box; one array for a seed, so not to be written to."""
+        """Coordinates (count, n) drawn uniformly from the box; read-only, as equal seeds share one array."""
         try:
             return self._samples[count, seed]
         except (KeyError, TypeError):  # not drawn yet, or no such thing
@@ -464,7 +479,7 @@ class Chain:
             return X
 
     def reach(self, tip: int, oriented: bool) -> Reach:
-        """Bounds on how far tip number ``tip`` gets, for targets with or without a full orientation."""
+        """Bounds on how far frame number ``tip`` reaches, for targets with or without a full orientation."""
         if type(tip) is not int or not 0 <= tip < len(self.frames) or not isinstance(oriented, bool):
             raise InvalidSetting(f"tip is 0 to {len(self.frames) - 1} and oriented a flag, got {tip!r}, {oriented!r}")
         if (tip, oriented) not in self._reaches:
@@ -485,9 +500,10 @@ class Chain:
         return [pin.SE3(pin.updateFramePlacement(self.model, self.data, f)) for f in self.frame_ids]
 
     def poses(self, X: ArrayLike) -> NDArray[np.float64]:
-        """World poses (k, T, 4, 4) of the T frames at the coordinates X (k, n), by the compiled loop.
+        """World poses (k, T, 4, 4) of the T frames at coordinates X (k, n), by compiled code.
 
-        Held joints are where ``reference`` has them; for others ask ``chain.at(q0).poses(X)``.
+        Held joints have their values of ``reference``; for those of another configuration use
+        ``chain.at(q0).poses(X)``.
         """
         population = np.atleast_2d(array("X", X, "...", self.n, error=InvalidConfiguration, finite=False))
         population = population.reshape(-1, self.n)

@@ -237,8 +237,8 @@ def _written(entries: tuple[Entry, ...], x: list[float]) -> Iterator[float]:
 
 def quaternion(angles: NDArray[np.float64]) -> NDArray[np.float64]:
     """Quaternions (..., 4), x y z w, of yaw, pitch and roll (..., 3), rad: R = Rz(yaw) Ry(pitch) Rx(roll)."""
-    c, s = np.moveaxis(np.cos(0.5 * angles), -1, 0), np.moveaxis(np.sin(0.5 * angles), -1, 0)
-    (cy, cp, cr), (sy, sp, sr) = c, s
+    c, s = np.cos(0.5 * angles), np.sin(0.5 * angles)
+    (cy, cp, cr), (sy, sp, sr) = (c[..., i] for i in range(3)), (s[..., i] for i in range(3))
     return np.stack(
         [
             cy * cp * sr - sy * sp * cr,
@@ -255,7 +255,7 @@ def angles(quaternions: NDArray[np.float64]) -> NDArray[np.float64]:
 
     Where the pitch is a right angle, yaw and roll are turns about one axis: then the roll is 0.
     """
-    x, y, z, w = np.moveaxis(quaternions, -1, 0)
+    x, y, z, w = (quaternions[..., i] for i in range(4))
     # The half angles (yaw +- roll) / 2 are exact up to a right angle of pitch, unlike those of a rotation matrix.
     plus, minus = np.arctan2(z + x, w - y), np.arctan2(z - x, w + y)
     up = np.hypot(w - y, z + x)  # sqrt(1 - sin(pitch))

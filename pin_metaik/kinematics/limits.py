@@ -28,7 +28,7 @@ class Limits:
         upper: (n,) rad or m, ``inf`` without a limit.
         velocity: (n,) rad/s or m/s, ``inf`` without a limit.
         rotates: (n,) True for an angle, False for a travel.
-        multi_turn: (n,) True for an angle that a whole turn does not change and whose limits leave room for one.
+        multi_turn: (n,) True for an angle whose range is a whole turn or more, so that it has copies of the same pose.
         names: The joint of each coordinate, for messages.
     """
 
@@ -62,7 +62,7 @@ class Limits:
 
     @cached_property
     def arrays(self) -> Bounds:
-        """Lower, upper and multi_turn as the compiled loops take them."""
+        """Lower, upper and multi_turn as arguments of the compiled functions."""
         return Bounds(self.lower, self.upper, self.multi_turn.astype(np.int64))
 
     @cached_property
@@ -77,14 +77,14 @@ class Limits:
 
     @cached_property
     def periodic(self) -> NDArray[np.bool_]:
-        """(n,) True for a coordinate that returns after a turn and has no limits: a continuous joint."""
+        """(n,) True for a continuous joint: an angle without limits."""
         return self.multi_turn & np.isinf(self.lower) & np.isinf(self.upper)
 
     def box(self) -> Box:
-        """The finite box to sample in: the limits, or one turn where a joint has none that is the same after a turn.
+        """The finite box to sample in: the limits, or one turn of an angle without limits.
 
         Raises:
-            InvalidBounds: If any other joint has no finite limits: there is no natural range to search.
+            InvalidBounds: If any other joint has no finite limits, as it then has no natural range to search.
         """
         lower, upper = self.lower.copy(), self.upper.copy()
         for i in np.flatnonzero(np.isinf(lower) | np.isinf(upper)):
@@ -100,7 +100,7 @@ class Limits:
         return Box(lower, upper)
 
     def one_turn(self) -> Limits:
-        """The same limits, but every angle with room for several turns has only the one in the middle of its range."""
+        """The same limits with every angle of more than one turn restricted to the turn in the middle of its range."""
         spare = np.maximum(0.5 * (self.upper - self.lower) - np.pi, 0.0)
         wide = self.multi_turn & np.isfinite(spare)
         lower, upper = self.lower.copy(), self.upper.copy()
@@ -113,7 +113,7 @@ class Limits:
         return np.minimum(np.maximum(self._given("x", x), self.lower), self.upper)
 
     def nearest_turns(self, x: NDArray[np.float64], x0: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Coordinates x (..., n), each winding angle moved by whole turns to be nearest to x0 inside its limits."""
+        """Coordinates x (..., n), each multi-turn angle moved by whole turns nearest to x0 inside its limits."""
         turn = 2.0 * np.pi
         x, x0 = self._given("x", x), array("x0", x0, len(self.names), finite=False)
         turns = np.round((x0 - x) / turn)
@@ -128,7 +128,7 @@ class Limits:
         return step
 
     def separation(self, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far coordinates a and b (..., n) are apart, each by itself, rad or m; whole turns do not count."""
+        """Distance (..., n) of each coordinate of a and b (..., n), rad or m, modulo whole turns."""
         step = self._given("b", b) - self._given("a", a)
         turns = 2.0 * np.pi * np.round(step / (2.0 * np.pi))
         return np.abs(np.where(self.multi_turn, step - turns, step))
@@ -167,7 +167,7 @@ class Limits:
 
     @checked_as(InvalidBounds)
     def bound(self, leader: str, line: tuple[float, float], follower: str, span: tuple[float, float]) -> Limits:
-        """The same limits where a joint that follows one of these, at scale x + shift, keeps to a range of its own.
+        """The same limits, narrowed so that a joint that follows at scale x + shift stays in a range of its own.
 
         Args:
             leader: The joint of these limits that is followed.
@@ -179,7 +179,7 @@ class Limits:
             InvalidBounds: If the range is crossed or NaN, or leaves the leader no room.
         """
         if leader not in self.names:
-            raise InvalidBounds(f"{leader!r} is none of the joints of these limits: {', '.join(self.names)}")
+            raise InvalidBounds(f"{leader!r} is not one of the joints of these limits: {', '.join(self.names)}")
         scale, shift = _pair(follower, line)
         low, high = _pair(follower, span)
         if not np.isfinite([scale, shift]).all():

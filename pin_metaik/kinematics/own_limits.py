@@ -26,5 +26,5 @@ def with_own(model: Limits, own: Mapping[str, tuple[float, float]]) -> Limits:
                 f"joint {name!r} has own limits [{low:g}, {high:g}] beyond [{model.lower[i]:g}, {model.upper[i]:g}]"
             )
         if remark:
-            warn(f"{remark}; they are taken as they are")
+            warn(f"{remark}; they are used unchanged")
     return limits

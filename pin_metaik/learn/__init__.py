@@ -1,4 +1,4 @@
-"""Fuzzy c-means, small dense networks and their trainers: no domain inside."""
+"""Fuzzy c-means, small dense networks and their trainers, for any data."""
 
 from pin_metaik.learn.fcm import Clusters, fuzzy_c_means, memberships
 from pin_metaik.learn.files import load_regressor, save_regressor

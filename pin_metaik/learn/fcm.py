@@ -23,11 +23,12 @@ COINCIDENT = 1e-300  # squared distance of a point from a centre it lies on
 
 @dataclass(frozen=True, eq=False)
 class Clusters:
-    """What fuzzy c-means found.
+    """The result of fuzzy c-means.
 
     Attributes:
-        centres: (c, d).
-        objective: J after each iteration (i,), never rising; computed with the centres the iteration began with.
+        centres: (c, d) centres of the clusters.
+        objective: J after each iteration (i,), never rising; computed with the centres at the beginning of the
+            iteration.
         converged: Whether the centres came to rest within the iterations allowed.
         interrupted: Whether Ctrl-C or a watch ended it.
     """
@@ -54,23 +55,24 @@ def fuzzy_c_means(
     start: ArrayLike | None = None,
     watch: Watch | None = None,
 ) -> Clusters:
-    """Minimise ``J = sum u_ik^m |z_k - v_i|^2`` by turns over memberships u and centres v.
+    """Minimise ``J = sum u_ik^m |z_k - v_i|^2`` alternately over memberships u and centres v (Bezdek 1981).
 
-    Starts from points drawn at random: from random memberships all centres begin at the mean, and are still far from
-    anywhere after a hundred iterations. The memberships are never all held: 23,779 x 1,064 of them would be 200 MB.
+    It starts from points drawn at random: from random memberships all centres begin near the mean, and have hardly
+    moved after a hundred iterations. The memberships are never stored all at once: 23,779 x 1,064 of them would take
+    200 MB.
 
     Args:
         Z: Points (n, d); scale the columns alike, the distance is Euclidean.
         clusters: c, at most n.
         m: Fuzziness, above 1.
-        iterations: At most.
-        tolerance: Ends when no centre moved further than this share of the data's widest column.
+        iterations: Largest number of iterations.
+        tolerance: It ends when no centre has moved by more than this share of the range of the data's widest column.
         rng: Seed or generator; ``None`` is a fixed seed.
         start: Centres (c, d) to begin at instead, e.g. to go on with a run that was cut short.
-        watch: Called after every iteration with their number and J; True ends the search.
+        watch: Called after every iteration with the number of iterations and J; returning True ends the search.
 
     Raises:
-        InvalidSetting: Points that are no table of finite numbers, or settings out of range.
+        InvalidSetting: Points that are not a table of finite numbers, or settings out of range.
         Interrupted: Ctrl-C; its ``result`` is the clusters so far.
     """
     Z = as_table("the points", Z)

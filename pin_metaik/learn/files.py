@@ -29,7 +29,7 @@ def save_regressor(regressor: Regressor, file: str | Path) -> None:
 
     Args:
         regressor: The network.
-        file: Where to: ``.npz``.
+        file: The file, ``.npz``.
 
     Raises:
         InvalidSetting: Another suffix.
@@ -40,10 +40,10 @@ def save_regressor(regressor: Regressor, file: str | Path) -> None:
 
 @checked
 def load_regressor(file: str | Path) -> Regressor:
-    """A network that ``save_regressor`` wrote; it gives the same numbers to the last bit.
+    """Read a network that ``save_regressor`` wrote; its outputs are the same to the last bit.
 
     Raises:
-        InvalidSetting: The file is missing, or is none of these.
+        InvalidSetting: The file is missing, or does not hold a network.
     """
     return regressor_of(read_arrays(Path(file), InvalidSetting, NETWORK), str(file))
 
@@ -90,7 +90,7 @@ def regressor_of(arrays: Mapping[str, np.ndarray], place: str) -> Regressor:
         inputs, output = (Scale(*numbers(arrays[key], 2, n)) for key, n in (("inputs", first), ("output", 1)))
         mse, iterations, seconds, converged = numbers(arrays["trained"], 4).tolist()
         trace = numbers(arrays["trace"], np.size(arrays["trace"]))
-    except (MetaIKError, ValueError, TypeError) as error:
+    except (MetaIKError, ValueError, TypeError, OverflowError) as error:
         raise InvalidSetting(f"{place} is not a saved network: {error}") from None
     training = Training(w, mse, int(iterations), seconds, bool(converged), False, trace)
     return Regressor(network, w, inputs, output, training)

@@ -22,7 +22,7 @@ EDGE = 1e-9  # of the range; as far outside is still inside
 
 
 class OutsideTraining(UserWarning):
-    """A network was asked outside the range of its training data, where nothing is known of its error."""
+    """A network was evaluated outside the range of its training data, where its error is unknown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +99,7 @@ class Regressor:
         return self.predict(table)
 
     def predict(self, X: Array) -> Array:
-        """Outputs (n,) for inputs X (n, d), without a word about their range."""
+        """Outputs (n,) for inputs X (n, d), without a warning outside the training range."""
         return self.output.up(self.network.outputs(self.w, self.inputs.down(self._given(X)))[:, None])[:, 0]
 
     def covers(self, X: Array) -> NDArray[np.bool_]:
@@ -128,9 +128,10 @@ def fit(
         y: Outputs (n,).
         hidden: Neurons of each hidden layer.
         trainer: By name or as an object.
-        iterations: At most; what one is depends on the trainer.
+        iterations: Largest number of iterations; what an iteration is depends on the trainer.
         rng: Seed or generator of the first weights; ``None`` is a fixed seed.
-        watch: Called after every iteration with their number and the error; True ends the training.
+        watch: Called after every iteration with the number of iterations and the error; returning True ends the
+            training.
 
     Raises:
         InvalidSetting: Data that do not fit together.

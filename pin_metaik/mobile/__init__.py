@@ -48,7 +48,7 @@ from pin_metaik.mobile.paths.planners.grid import GridAStar
 from pin_metaik.mobile.paths.planners.protocol import Found, PathPlanner
 from pin_metaik.mobile.paths.planners.registry import PLANNERS
 from pin_metaik.mobile.paths.planners.sampling import RandomTree, Roadmap
-from pin_metaik.mobile.paths.planning import plan_alternatives, plan_path, planner_of
+from pin_metaik.mobile.paths.planning import path_through, plan_alternatives, plan_path, planner_of
 from pin_metaik.mobile.paths.problem import PathProblem
 from pin_metaik.mobile.paths.result import PathPlan, PathStatus
 from pin_metaik.mobile.paths.visibility import Visibility
@@ -116,6 +116,7 @@ __all__ = [
     "load_vehicle",
     "mobile_robot",
     "nav_path",
+    "path_through",
     "plan_alternatives",
     "plan_among_moving",
     "plan_in_motion",

@@ -39,13 +39,13 @@ URDF = """<?xml version="1.0"?>
 
 @checked
 def mobile_robot(vehicle: Vehicle, height: float = HEIGHT) -> Robot:
-    """The robot as Pinocchio knows it; its frame ``base`` is on the floor below its centre, x is ahead.
+    """The robot as a Pinocchio model; its frame ``base`` is on the floor below its centre, with x ahead.
 
     Its configuration is (x, y, cos heading, sin heading), its velocity (forwards, sideways, turning) in its own frame.
 
     Args:
         vehicle: The robot.
-        height: Of its cylinder, m.
+        height: Height of its cylinder, m.
     """
     radius = max(vehicle.radius, SMALLEST)
     numbers = {"middle": height / 2, "height": height, "radius": radius, "nose": radius / 2, "width": radius / 4}

@@ -1,4 +1,4 @@
-"""Errors of planning: a place the robot cannot be in, and two places with no way between them; and a warning."""
+"""Errors of planning: a position where the robot cannot be, two positions without a path between; and a warning."""
 
 from __future__ import annotations
 
@@ -8,18 +8,19 @@ Point = tuple[float, float]
 
 
 class LooksLikeDegrees(UserWarning):
-    """Coordinates that seem to be longitudes and latitudes where lengths in metres are wanted."""
+    """Coordinates that look like longitudes and latitudes, where lengths in metres are expected."""
 
 
 class Blocked(MetaIKError):
     """A start or goal inside an obstacle, or outside the workspace.
 
     Attributes:
-        role: ``"start"`` or ``"goal"``; ``"curve"`` of ``Obstructed``.
+        role: ``"start"`` or ``"goal"``; ``"curve"`` in ``Obstructed``.
         point: Where it is (x, y).
-        clearance: Distance it should keep from obstacles and walls.
-        nearest: The nearest place (x, y) that would have worked; None if no place would.
-        join: None, or how grown obstacles end at their corners, if it keeps the clearance and only that covers it.
+        clearance: Distance to be kept from obstacles and walls.
+        nearest: The nearest free position (x, y); None if there is none.
+        join: How corners of grown obstacles are joined, if the position keeps the clearance and only such a join covers
+            it; otherwise None.
     """
 
     def __init__(
@@ -37,7 +38,7 @@ class Obstructed(Blocked):
     """Every curve that was tried meets an obstacle.
 
     Attributes:
-        pose: Where the best of them meets one first (x, y, heading), m and rad.
+        pose: Pose (x, y, heading) at which the best of them first meets an obstacle, m and rad.
         point: The obstacle's point there (x, y).
     """
 
@@ -60,9 +61,9 @@ class NoPath(MetaIKError):
         start: (x, y).
         goal: (x, y).
         clearance: Distance the path had to keep from obstacles and walls.
-        nearly: None if there is no way at all; else a clearance a little smaller that leaves one, so that there may be
-            one between the corners of the grown obstacles and the arcs that they stand for.
-        join: How grown obstacles ended at their corners.
+        nearly: A slightly smaller clearance with which there is a path, if there is one: then one may exist between the
+            corners of the grown obstacles and the arcs that they approximate. Otherwise None.
+        join: How corners of grown obstacles were joined.
     """
 
     def __init__(
@@ -79,10 +80,10 @@ class NoPath(MetaIKError):
 
 
 class NoTimedPath(NoPath):
-    """Among obstacles that move no motion of the form that was looked for leads to the goal.
+    """No motion of the kind searched for leads to the goal among the moving obstacles.
 
     Attributes:
-        why: What stands in the way.
+        why: The reason, in words.
     """
 
     def __init__(self, start: Point, goal: Point, clearance: float, why: str) -> None:
@@ -95,12 +96,12 @@ class NoTimedPath(NoPath):
 
 
 class NoRoom(MetaIKError):
-    """A robot in motion for which nothing that was tried keeps clear of the obstacles.
+    """A moving robot, for which none of the motions tried keeps clear of the obstacles.
 
     Attributes:
         place: Where it is (x, y).
         v: Its speed, m/s.
-        stop: Where it stands if it brakes straight ahead at once (x, y).
+        stop: Where it would stop if it braked straight ahead at once (x, y).
         radius: Distance to keep from obstacles, m.
     """
 

@@ -36,7 +36,7 @@ def save(file: str | File, draw: Callable[[Any], None], size: tuple[float, float
     """Draw a figure and write it.
 
     Args:
-        file: Where to; the suffix says what (``.png``, ``.svg``, ``.pdf``).
+        file: The file; its suffix gives the format (``.png``, ``.svg``, ``.pdf``).
         draw: Draws into an empty figure, e.g. ``lambda figure: draw_plan(figure, plan)``.
         size: Width and height in inches.
 

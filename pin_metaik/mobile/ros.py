@@ -1,4 +1,4 @@
-"""Out to ROS: paths and motions as ``nav_msgs/Path``, in YAML as ``ros2 topic pub`` takes it, or in JSON."""
+"""Export to ROS: paths and motions as ``nav_msgs/Path``, in YAML for ``ros2 topic pub``, or in JSON."""
 
 from __future__ import annotations
 
@@ -25,14 +25,15 @@ Driven = Path | Curve | Trajectory
 def nav_path(of: Driven, frame: str = FRAME, *, stamp: float = 0.0, every: float | None = None) -> dict[str, Any]:
     """A path or motion as the plain values of a ``nav_msgs/Path``.
 
-    Every pose has the heading as a quaternion: of a polyline that of the segment that begins there. Poses of a
-    trajectory are stamped with their times; others with the one stamp.
+    Every pose has its heading as a quaternion; for a polyline, that of the segment that begins there. Poses of a
+    trajectory are stamped with their times, others all with ``stamp``.
 
     Args:
         of: A ``Path``, a ``Curve`` or a ``Trajectory``.
         frame: ``frame_id`` of all headers.
-        stamp: When it begins, s since ROS' epoch.
-        every: Between poses, s of a trajectory (default 0.1) or m of a curve (default 0.05); a path has its points.
+        stamp: Time at which it begins, s since the ROS epoch.
+        every: Distance between poses: s for a trajectory (default 0.1), m for a curve (default 0.05); not used for a
+            path, which has its points.
 
     Raises:
         InvalidSetting: A stamp below zero, or a distance between poses that is not above zero.

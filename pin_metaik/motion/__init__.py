@@ -1,4 +1,4 @@
-"""Motions made tick by tick: following targets within limits.
+"""Control tick by tick: joints that follow targets within limits of velocity and acceleration.
 
 import pin_metaik as mik
 

@@ -1,4 +1,4 @@
-"""Follow a target that moves, tick by tick: for teleoperation and servoing."""
+"""Following a moving target tick by tick, for teleoperation and servoing."""
 
 from __future__ import annotations
 
@@ -39,49 +39,49 @@ NOTHING_NEAR = Surroundings(
 
 @checked
 class Follower:
-    """Configurations, one a control tick, that follow targets within limits.
+    """A controller: at each tick it gives the next configuration, following targets within the joints' limits.
 
-    For every target, and for every configuration from which it is started at rest, inside its limits, or which it has
-    returned itself, each tick keeps, to rounding:
+    If it was started at rest at a configuration inside the limits and is then given the configurations that it
+    returned, each tick, whatever the target, satisfies up to rounding:
 
     1. |v_j| <= velocity_j;
     2. |v_j - v_j of the tick before| <= acceleration_j dt;
     3. the joint's lower and upper limit; and it can stop before either.
 
-    Why: a joint that brakes from a speed v >= 0 has v - a, v - 2 a, ... with a = acceleration dt, and goes on by
-    D(v) = dt ((v - a) + (v - 2 a) + ...) in the ticks to come. A tick takes only speeds with dt v + D(v) <= d, where d
-    is how far the limit is away; in the next one d' = d - dt v >= D(v). There the speed w = max(v - a, 0) keeps (1) and
-    (2), and dt w + D(w) = D(v) <= d': it is one of those that may be taken. So after a tick that has kept (3) there is
-    always a speed that keeps all, braking is one, and by induction from a start at rest none is ever broken. The same
-    holds towards the lower limit, and for each joint by itself. The speeds that may be taken are an interval; the tick
-    takes the one that serves the target best.
+    Proof: a joint that brakes from a speed v >= 0 has the speeds v - a, v - 2 a, ... with a = acceleration dt, and
+    moves on by D(v) = dt ((v - a) + (v - 2 a) + ...) in the following ticks. A tick admits only speeds v with dt v +
+    D(v) <= d, where d is the distance to the limit; at the next tick that distance is d' = d - dt v >= D(v). There the
+    speed w = max(v - a, 0) satisfies (1) and (2), and dt w + D(w) = D(v) <= d', so that it is admitted. Hence after a
+    tick with (3) there is always an admitted speed, braking being one, and by induction from a start at rest (1) to (3)
+    always hold. The same is true towards the lower limit, and for each joint by itself. The admitted speeds are an
+    interval; the tick takes the one that serves the target best.
 
-    With a world, each tick is one from which the robot can brake, every joint as hard as its acceleration allows,
-    without a collision: that is proved before the tick is taken, by distances and by how far bodies can move. Where the
-    proof fails for all speeds that are tried, it brakes, for which the proof of the tick before still stands. So it
-    never collides, nor does it when it brakes, as long as nothing else moves, the joints outside the chain included,
-    and it was started at rest and free of collisions. What moves by itself is seen where it is at each tick, and what
-    comes too fast can hit it. Down to ``clearance`` beyond the margin distances slow the robot down; nearer it goes
-    only where it must, and never by more than half of what is left at a time.
+    With a world, before each tick it is proved, from distances and from bounds on how far bodies can move, that after
+    it the robot can brake, every joint as hard as its acceleration allows, without a collision. If the proof fails for
+    all speeds that are tried, the robot brakes, for which the proof of the tick before still holds. So it never
+    collides, provided that it was started at rest and free of collisions and that nothing else moves, including joints
+    outside the chain. Moving obstacles are taken at each tick where they then are; one that is too fast can hit the
+    robot. The robot slows down as distances approach the margin plus ``clearance``; it goes nearer only where it must,
+    and then by at most half of the remaining distance in a tick.
 
-    If it is given another configuration than its last one (a measured one), (1) and (2) still hold; a joint that is too
-    near its limit for its speed brakes as hard as (2) allows, and one that is beyond it goes back. Commands to a
-    position controller are best made from the commands before: ``step(target, last.q)``.
+    If it is given another configuration than the one it returned (a measured one), (1) and (2) still hold; a joint that
+    is too close to its limit for its speed brakes as hard as (2) allows, and one that is beyond its limit moves back.
+    With a position controller, it is best to pass the last command: ``step(target, last.q)``.
 
-    It moves towards a target by damped least squares with these intervals inside, leads a target that moves by its
-    speed since the last tick, and slows down in time for one that stands. In a singularity the damping lets go
-    of the directions that are lost, smoothly, and the target is missed for a while; a target out of reach is approached
-    as near as the linearised arm sees it, without swinging. Jerk is not limited. It never jumps to another branch of
-    solutions: where its own ends, it goes along the limits as near to the target as it can, and ``step`` says so;
-    ``switch`` and ``move`` lead to another branch.
+    Speeds are found by damped least squares within these intervals. The velocity of a moving target is estimated from
+    its last tick and fed forward; for a target at rest the robot slows down in time. In a singularity the damping gives
+    up the lost directions smoothly, and the target is missed for a while; a target out of reach is approached as
+    closely as the linearised arm allows, without oscillation. Jerk is not limited. The follower never jumps to another
+    branch of solutions: where its branch ends, it goes along the limits as near to the target as it can, and ``step``
+    reports that; ``switch`` and ``move`` lead to another branch.
 
     Attributes:
         chain: The joints to move and the frames to place.
         rate: Ticks per second, Hz.
-        limits: How fast the joints may move.
-        world: What must not collide; None: nothing is looked at.
-        posture: (nq,) what the joints return to as far as the targets leave them free; None: they stay.
-        clearance: Distance beyond the world's margin from which on it is kept from coming nearer, m.
+        limits: Largest velocity and acceleration of each joint.
+        world: The world in which nothing must collide; None: collisions are not checked.
+        posture: (nq,) configuration that the joints return to as far as the targets leave freedom; None: they stay.
+        clearance: Distance beyond the world's margin that is kept where possible, m.
         v: (n,) speeds of the last tick, rad/s or m/s.
     """
 
@@ -132,8 +132,8 @@ class Follower:
         """One tick towards a target.
 
         Args:
-            target: As for ``solve_ik``. Its speed is taken from where it was one tick ago; targets that come less often
-                than ticks are best interpolated.
+            target: As for ``solve_ik``. Its velocity is estimated from the target one tick ago, so targets that come
+                less often than ticks should be interpolated.
             q: (nq,) where the robot is: at first the measured configuration, then what the last step returned.
 
         Raises:
@@ -172,10 +172,10 @@ class Follower:
         return FollowerStep(after, self.v.copy(), status, position, orientation, share, stopped)
 
     def move(self, goal: ArrayLike, q: ArrayLike) -> FollowerStep:
-        """One tick towards a configuration, joint by joint; as a rule all joints begin and end together.
+        """One tick towards a configuration in joint space; usually all joints begin and end together.
 
         Args:
-            goal: (nq,) where to, brought inside the limits; joints outside the chain stay as they are.
+            goal: (nq,) configuration to reach, clipped to the limits; joints outside the chain stay as they are.
             q: (nq,) where the robot is, as for ``step``.
 
         Raises:
@@ -211,16 +211,16 @@ class Follower:
         return self.move(q, q)
 
     def reset(self) -> None:
-        """Forget speeds and targets: the robot stands, and begins anew."""
+        """Forget speeds and targets: the robot is at rest and starts anew."""
         self.v, self._before = np.zeros(self.chain.n), None
 
     def switch(
         self, target: TargetLike | Sequence[TargetLike], q: ArrayLike, *, rng: Rng = None
     ) -> NDArray[np.float64] | None:
-        """Another configuration (nq,) that meets a target: where to ``move`` when a branch ends.
+        """Another configuration (nq,) that meets a target, to ``move`` to when a branch ends.
 
-        It takes milliseconds, or longer in a world: ask for it while the robot stands. Nothing is said of the way
-        there: ``move`` stops before it collides.
+        It takes milliseconds, or longer in a world: call it while the robot is at rest. The move there may be blocked
+        by a collision, before which ``move`` stops.
 
         Args:
             target: As for ``solve_ik``.
@@ -228,8 +228,8 @@ class Follower:
             rng: Seed or generator; ``None`` is a fixed seed.
 
         Returns:
-            Of the solutions found, in a world those free of collisions, the one that takes the joints the least time;
-            None, if there is none.
+            Of the solutions found (in a world, of those free of collisions) the one that the joints reach in the least
+            time; None if there is none.
 
         Raises:
             InvalidTarget: If the target is none.

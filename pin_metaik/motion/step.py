@@ -1,4 +1,4 @@
-"""What one tick of a follower comes to."""
+"""The result of one tick of a follower."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from pin_metaik.plain import fields_of
 
 
 class FollowerStatus(StrEnum):
-    """Why a follower is where it is after a tick."""
+    """State of a follower after a tick."""
 
     ON_TARGET = "ON_TARGET"
     """The targets are met, within their tolerances."""
     UNDER_WAY = "UNDER_WAY"
-    """It moves as fast as its limits let it; nothing else is in the way."""
+    """It moves towards the targets as fast as its limits allow."""
     AT_LIMITS = "AT_LIMITS"
-    """Joints stand at their limits, and the way on leads beyond: here the branch ends; see ``Follower.switch``."""
+    """Joints are at limits that the motion would cross: here the branch ends; see ``Follower.switch``."""
     NO_DIRECTION = "NO_DIRECTION"
-    """The joints cannot go where the target is, not even slowly: a singularity, or the edge of what the arm reaches."""
+    """No joint motion leads towards the target: a singularity, or the boundary of the workspace."""
     NEAR_COLLISION = "NEAR_COLLISION"
-    """It is slower than it would be, or stands, because bodies come near each other."""
+    """It is slowed down or stopped because bodies come near each other."""
 
 
 @dataclass(eq=False, slots=True)
@@ -32,13 +32,13 @@ class FollowerStep:
     """The outcome of one control tick.
 
     Attributes:
-        q: (nq,) where to be at its end.
+        q: (nq,) configuration at the end of the tick: the command for the joints.
         v: (n,) speeds of the chain's coordinates during the tick, rad/s or m/s.
-        status: Why it is there.
+        status: Whether the targets are met and, if not, why.
         position_error: Of the worst frame at q, m; NaN of a tick that moves to a configuration.
         orientation_error: Of the worst frame at q, rad; NaN of a tick that moves to a configuration.
-        speed: Which part of the change of speed that it wanted the world let it have, 0 to 1.
-        at_limits: Names of the joints that stand at a limit which the way on leads beyond.
+        speed: Share of the desired change of speed that the world permitted, 0 to 1.
+        at_limits: Names of the joints at a limit that the motion towards the target would cross.
     """
 
     q: NDArray[np.float64]
@@ -59,5 +59,5 @@ class FollowerStep:
 
     @property
     def branch_ends(self) -> bool:
-        """Whether this branch of solutions leads no farther: another one may."""
+        """Whether this branch of solutions ends here; another branch may lead on."""
         return self.status in (FollowerStatus.AT_LIMITS, FollowerStatus.NO_DIRECTION)

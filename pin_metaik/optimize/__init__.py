@@ -1,4 +1,4 @@
-"""Metaheuristics over a box: numpy only, no robot, no Pinocchio."""
+"""Metaheuristics that minimise a function over a box; they need numpy alone."""
 
 from pin_metaik.optimize.asktell import AskTell, Best, Status
 from pin_metaik.optimize.budget import Budget

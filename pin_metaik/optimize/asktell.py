@@ -1,4 +1,4 @@
-"""Ask for points, tell their costs: the search from outside, for objectives that cannot be a Python callable."""
+"""Ask for points, tell their costs: a search driven by its caller, for objectives that cannot be a Python callable."""
 
 from __future__ import annotations
 
@@ -39,25 +39,26 @@ class Best(NamedTuple):
 
 @checked
 class AskTell:
-    """A search that waits: `ask` for points, evaluate them anywhere, `tell` their costs, until `status` is set.
+    """A search driven by its caller: `ask` for points, evaluate them, `tell` their costs, until `status` is set.
 
     Args:
         box: Where to search.
         algorithm: A name of the registry or an object with a `search` method.
         rng: Seed or generator: the same seed gives the same answer bit for bit; ``None`` is a fixed seed.
         seeds: Points to start from (s, n) or (n,), clipped to the box. An algorithm uses as many as it has agents.
-        budget: When to stop. Without one it never does, and schedules that follow the budget stay at their beginning.
+        budget: When to stop. Without one it never stops, and parameters scheduled over the budget keep their first
+            values.
         keep: How many of the best points to remember in `elite`.
 
     Attributes:
         run: The run as the algorithm sees it, with the evaluations spent.
         elite: The best points so far.
         status: Why it ended; None while it runs.
-        generations: How many batches were told.
+        generations: Number of batches whose costs were told.
 
     Raises:
         UnknownName: No algorithm of that name.
-        InvalidSetting: Seeds or `keep` that make no sense; an algorithm that leaves the box.
+        InvalidSetting: Seeds of the wrong shape, `keep` below 1, or an algorithm that leaves the box.
     """
 
     def __init__(

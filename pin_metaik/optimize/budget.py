@@ -17,9 +17,9 @@ class Budget:
 
     Attributes:
         evaluations: Function evaluations (one per point, not per generation). Spent exactly, never overspent.
-        seconds: Wall-clock time in s, looked at between generations. How far a search gets in it depends on the
-            machine and its load: results are not reproducible.
-        target: A cost that is good enough: the search ends with the first generation that reaches it.
+        seconds: Wall-clock time in s, checked between generations. How far a search gets depends on the machine and its
+            load, so results are not reproducible.
+        target: A sufficient cost: the search ends with the first generation that reaches it.
 
     Raises:
         InvalidBudget: A limit that is not a positive number, or a target that is not a number.
@@ -40,7 +40,7 @@ class Budget:
 
     @property
     def ends(self) -> bool:
-        """Whether it stops every search. A target alone does not: it may never be reached."""
+        """Whether it ends every search. A target alone does not, as it may never be reached."""
         return self.evaluations is not None or self.seconds is not None
 
 

@@ -19,8 +19,8 @@ class GWO:
     Wolves that leave the box are put back on its wall. The update contains ``|C leader - x|``, which draws the pack
     towards the origin: on functions with their optimum there it looks better than it is.
 
-    The leaders are the best three so far, as the paper says. The author's published code forgets an alpha that is
-    beaten instead of making it beta; with optima at the origin that is what gives his printed figures.
+    The leaders are the best three so far, as the paper says. The author's published code drops a former alpha instead
+    of making it beta; with optima at the origin that yields the printed figures.
 
     Attributes:
         agents: Wolves, at least 3.

@@ -67,25 +67,26 @@ def minimize(
 ) -> Result:
     """Search the box for a point of least cost.
 
-    Ctrl-C goes through, as an ``Interrupted`` with the best point so far once there is one.
+    Ctrl-C raises ``Interrupted`` with the best point so far, once there is one.
 
     Args:
-        objective: Costs (k,) of points (k, n); the array it gets is its own. NaN counts as +inf.
-        box: Where to search.
+        objective: Function that returns the costs (k,) of points (k, n); it may overwrite the array. NaN counts as
+            +inf.
+        box: The search space.
         algorithm: A name of the registry or an object with a `search` method.
         budget: When to stop; needs `evaluations` or `seconds`.
         rng: Seed or generator: the same seed gives the same answer bit for bit, unless the budget is in seconds.
             ``None`` is a fixed seed.
         seeds: Points to start from (s, n) or (n,), clipped to the box. An algorithm uses as many as it has agents.
         trace: Whether to record the best cost after every generation.
-        watch: Called after every generation with evaluations done and in all, the best cost, and the points that the
-            generation looked at (``Progress.population``); True ends it as interrupted.
+        watch: Called after every generation with the evaluations done and in all, the best cost, and the points of the
+            generation (``Progress.population``); returning True ends the search as interrupted.
         keep: How many of the best points to return in `Result.elite`.
 
     Raises:
         UnknownName: No algorithm of that name.
         InvalidBudget: The budget would never end.
-        InvalidSetting: Costs of the wrong shape; seeds or `keep` that make no sense; an algorithm that leaves the box.
+        InvalidSetting: Costs or seeds of the wrong shape, `keep` below 1, or an algorithm that leaves the box.
         Interrupted: Ctrl-C, after the first generation; its `result` is a Result.
     """
     if not budget.ends:

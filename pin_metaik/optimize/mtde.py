@@ -27,7 +27,7 @@ class MTDE:
     that leave the box go half-way back (Zhang and Sanderson 2009, JADE).
 
     Attributes:
-        agents: Individuals N, at least 20, so that a fifth of them still has differences to offer.
+        agents: Individuals N, at least 20, so that differences can be formed within a fifth of them.
         patience: Iterations between two choices of the winner, n or WinIter; the paper gives none.
         a2_initial: Weight of the union in L-TVP at the end of the run: Eq. 24 runs backwards.
         a2_final: The same at the beginning.

@@ -23,7 +23,7 @@ class PSO:
     - ``constriction``: ``v = chi (v + c1 r1 (p - x) + c2 r2 (g - x))`` (Clerc and Kennedy 2002); c1 = c2 = 2.05.
     - ``inertia``: ``v = w v + c1 r1 (p - x) + c2 r2 (g - x)``, w falling linearly (Shi and Eberhart 1998); c1 = c2 = 2.
     - ``literal``: ``v = chi v + c1 r1 (p - x) + c2 r2 (g - x)``, the constants of the first in the form of the second,
-      as the Stewart platform paper prints it (its Eq. 12). It diverges: only walls and v_max hold it.
+      as the Stewart platform paper prints it (its Eq. 12). It diverges, limited only by the box and v_max.
 
     Particles start with half the way to a random point as their velocity (as SPSO 2007); one that would leave the box
     stops at its wall.
@@ -36,7 +36,7 @@ class PSO:
         w_max: Inertia at the beginning of the budget (inertia only).
         w_min: Inertia at its end (inertia only).
         chi: Constriction factor (constriction and literal).
-        v_max: Largest velocity as a share of the width of the box; from 1 on it limits nothing that the walls do not.
+        v_max: Largest velocity as a share of the width of the box; from 1 on it has no effect.
     """
 
     agents: int = 40

@@ -1,4 +1,4 @@
-"""The protocol of a metaheuristic, and the search as it sees it."""
+"""The protocol of a metaheuristic, and a run of a search."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from pin_metaik.optimize.space import Box
 
 
 class Search:
-    """One run as the algorithm sees it.
+    """One run of a search, as given to the algorithm.
 
     Attributes:
         space: The box every point must lie in.
         rng: The only source of randomness.
         seeds: Points given to start from (s, n), already inside the box; s may be 0.
-        evaluations: Function evaluations spent so far. The caller counts; algorithms only read.
+        evaluations: Function evaluations spent so far. The caller counts; algorithms only read it.
     """
 
     def __init__(self, space: Box, rng: np.random.Generator, seeds: Array, budget: Budget) -> None:
@@ -36,7 +36,7 @@ class Search:
     def progress(self) -> float:
         """Share of the budget spent, 0 to 1: what papers write as t / MaxIter.
 
-        Counted in evaluations; in seconds when the budget has nothing else; 0 for ever without a budget.
+        By evaluations, or by seconds if the budget has only these; always 0 without a budget.
         """
         if self._budget.evaluations is not None:
             return min(1.0, self.evaluations / self._budget.evaluations)
@@ -63,12 +63,12 @@ class Search:
 
 @runtime_checkable
 class Metaheuristic(Protocol):
-    """Anything that proposes points and learns from their costs: one method is all it takes.
+    """An algorithm that proposes points and learns from their costs: any object with this one method.
 
-    The method is a generator: ``costs = yield X`` hands out points X (k, n), k >= 1, inside ``run.space`` and gets back
-    their costs (k,), its own to keep or to overwrite; smaller is better, +inf is a point that does not count. It loops
-    for ever: whoever drives it evaluates, counts, and closes it when the budget is spent. The last batch may be cut
-    short, in which case its costs never come back. X is copied when it is handed out.
+    The method is a generator: ``costs = yield X`` hands out points X (k, n), k >= 1, inside ``run.space``, and receives
+    their costs (k,), an array that it may keep or overwrite. Smaller is better; +inf marks an invalid point. It loops
+    for ever: the caller evaluates, counts, and closes it when the budget is spent. The last batch may be cut short, and
+    its costs are then not returned. X is copied when it is handed out.
 
     Its settings are fields of a frozen dataclass.
     """

@@ -20,13 +20,13 @@ Leapers = Literal["worst", "all"]
 class SFLA:
     """Shuffled frog leaping, Eusuff and Lansey 2003, as Elbeltagi et al. 2005 write it: without sub-memeplexes.
 
-    The defaults leap too far on purpose: ``leap=1.3`` is the C_L of the modified SFLA (Ibrahim 2018), here with the
-    fall-backs of the published one. ``SFLA(leap=1)`` is SFLA as published; ``SFLA(memeplexes=3, fallbacks=False)`` is
-    Ibrahim's text to the letter. The memeplexes leap side by side, each with its own worst frog. A leap that does not
-    improve the frog is not made; one that ends outside the box ends on its wall.
+    By default frogs leap beyond the best frog: ``leap=1.3`` is the C_L of the modified SFLA (Ibrahim 2018), here with
+    the fall-backs of the published SFLA. ``SFLA(leap=1)`` is SFLA as published; ``SFLA(memeplexes=3, fallbacks=False)``
+    is Ibrahim's text to the letter. The memeplexes leap side by side, each with its own worst frog. A leap that does
+    not improve the frog is not made; one that ends outside the box ends on its wall.
 
-    ``leapers="all"`` lets every frog but its memeplex's best leap at every step, all at once: what the times that
-    Ibrahim printed say was done.
+    ``leapers="all"`` lets every frog but its memeplex's best leap at every step, all at once, as the computing times
+    printed by Ibrahim suggest.
 
     Assumed: ``rand`` is drawn for every coordinate. With one number for all, frogs stay on the lines to their leaders
     and the population goes flat: on the shifted 10-D sphere with 20,000 evaluations it ends at 500 instead of 1e-5.

@@ -1,4 +1,4 @@
-"""The box a search lives in: one lower and one upper bound per coordinate."""
+"""The search space: one lower and one upper bound for each coordinate."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from pin_metaik.optimize.settings import MANY, few
 
 @dataclass(frozen=True, eq=False, init=False)
 class Box:
-    """The box of a search: the points ``lower <= x <= upper``, coordinate by coordinate.
+    """The search space of an optimisation: the points ``lower <= x <= upper``, coordinate by coordinate.
 
-    It has any number of dimensions and is nothing solid; that is ``collision.Box``.
+    It has any number of dimensions. (``collision.Box`` is another class: a solid.)
 
-    A coordinate with ``lower == upper`` is fixed; every algorithm copes with that.
+    A coordinate with ``lower == upper`` is fixed, which every algorithm supports.
 
     Attributes:
         lower: Lower bounds (n,), finite, read-only.
@@ -44,7 +44,7 @@ class Box:
         with np.errstate(over="ignore"):
             too_wide = np.flatnonzero(~np.isfinite(upper - lower))
         for index in too_wide:
-            raise InvalidBounds(f"bounds at index {index} are further apart than a float can say")
+            raise InvalidBounds(f"bounds at index {index} are so far apart that their difference overflows")
         object.__setattr__(self, "lower", lower)
         object.__setattr__(self, "upper", upper)
         object.__setattr__(self, "_rows", (lower[None], upper[None]))
@@ -77,7 +77,7 @@ class Box:
         return np.minimum(clipped, upper, out=clipped)
 
     def halfway(self, X: Array, origin: Array) -> Array:
-        """X with every coordinate that left the box put half-way between its origin and the bound it crossed.
+        """X with every coordinate outside the box moved half-way between its origin and the bound it crossed.
 
         Unlike `clip` this keeps a population from piling up on the walls (Zhang and Sanderson 2009, JADE).
 

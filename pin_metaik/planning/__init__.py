@@ -1,4 +1,4 @@
-"""Joint moves round obstacles, planned by OMPL (Sucan, Moll and Kavraki 2012), if it is installed."""
+"""Joint motions around obstacles, planned by OMPL (Sucan, Moll and Kavraki 2012), if it is installed."""
 
 from pin_metaik.planning.adapter import Adapter
 from pin_metaik.planning.plan import JointPlan, installed, plan_joint_move

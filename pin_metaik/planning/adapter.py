@@ -1,4 +1,4 @@
-"""A chain in a world as OMPL sees it: a space of states, which of them are valid, and which motions."""
+"""A chain in a world for OMPL: a state space, and the validity of states and motions."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from pin_metaik.lookup import need
 
 @checked
 class Adapter:
-    """What a planner of OMPL needs of a chain in a world; ``setup()`` has all of it, for any planner and goal.
+    """A chain in a world as a planning problem of OMPL; ``setup()`` returns it for any planner and goal.
 
-    A state is a compound one: a real vector of the joints with limits, then one state of SO(2) for each continuous
-    joint. It is valid where the world calls it free. A motion is valid where ``CollisionWorld.clear_between`` proves
-    it free, so that a path has no collisions between its states either, whatever OMPL's resolution.
+    A state is a compound state: a real vector of the joints with limits, then one SO(2) state for each continuous
+    joint. It is valid if it is free of collisions in the world. A motion is valid if ``CollisionWorld.clear_between``
+    proves it free, so that a path has no collisions between its states either, whatever OMPL's resolution.
 
     Attributes:
-        chain: The chain, with its held joints where ``base`` has them.
+        chain: The chain, with its held joints as in ``base``.
         world: The world.
-        base: (nq,) configuration of the joints that the chain does not move.
+        base: (nq,) configuration with the values of the joints that the chain does not move.
         space: OMPL's space, an ``ompl.base.CompoundStateSpace``.
     """
 
@@ -102,7 +102,7 @@ class Adapter:
         """A state of the space as a configuration (nq,).
 
         Raises:
-            InvalidSetting: If it is no compound state.
+            InvalidSetting: If it is not a compound state.
         """
         instance(self._kind, state=state)
         x = np.empty(self.chain.n)

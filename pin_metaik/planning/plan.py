@@ -26,10 +26,10 @@ SIMPLIFYING = 1.0  # s at most
 
 @dataclass(frozen=True, eq=False)
 class JointPlan:
-    """A way from a start to a goal, over straight joint moves that are each proved free.
+    """A path from a start to a goal, made of straight joint moves that are each proved free of collisions.
 
     Attributes:
-        q: (p, nq) configurations, from the start to one of the goals; none if no way was found.
+        q: (p, nq) configurations, from the start to one of the goals; (0, nq) if no path was found.
         goal: The number of the goal that is reached; None if none is.
         seconds: Time taken, s.
         chain: The chain.
@@ -42,7 +42,7 @@ class JointPlan:
 
     @property
     def success(self) -> bool:
-        """Whether a way was found. Where none was, there may be one nevertheless."""
+        """Whether a path was found. If none was, there may be one nevertheless."""
         return self.goal is not None
 
     def __bool__(self) -> bool:
@@ -60,7 +60,7 @@ class JointPlan:
 
 
 def installed() -> bool:
-    """Whether OMPL is."""
+    """Whether OMPL is installed."""
     return find_spec("ompl") is not None
 
 
@@ -75,22 +75,22 @@ def plan_joint_move(
     seconds: float = 5.0,
     rng: Rng = None,
 ) -> JointPlan:
-    """Plan a joint move round obstacles with OMPL.
+    """Plan a joint motion around obstacles with OMPL.
 
     Args:
         chain: The joints that move.
-        world: What must not collide.
-        q0: (nq,) the configuration to begin at, with the joints that the chain does not move where they stay.
-        goals: (nq,) the configuration to get to, or (k, nq) several, any of which will do, as ``solve_ik_all`` has
-            them: ``mik.solve_ik_all(chain, pose, q0, world=world).q``.
-        planner: OMPL's name of a geometric planner.
-        seconds: Time that the planner may take, s; shortening the way takes up to a second more. A planner that
-            improves its way, such as ``"RRTstar"``, takes all of it.
-        rng: Seed or generator; ``None`` is a fixed seed. OMPL draws from one source in a process: the same seed gives
-            the same way only in a process that has not planned before.
+        world: The world in which nothing must collide.
+        q0: (nq,) start configuration; joints that the chain does not move keep its values.
+        goals: (nq,) goal configuration, or (k, nq) several, any of which will do, for instance all solutions of a pose:
+            ``mik.solve_ik_all(chain, pose, q0, world=world).q``.
+        planner: Name of a geometric planner of OMPL.
+        seconds: Time that the planner may take, s; shortening the path takes up to a second more. A planner that goes
+            on to improve its path, such as ``"RRTstar"``, takes all of it.
+        rng: Seed or generator; ``None`` is a fixed seed. OMPL has one random source per process, so the same seed gives
+            the same path only in a process that has not planned before.
 
     Returns:
-        The way. If none was found, that proves nothing.
+        The plan: check ``plan.success``. That none was found proves nothing.
 
     Raises:
         MissingExtra: OMPL is not installed.

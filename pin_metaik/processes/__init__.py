@@ -1,4 +1,4 @@
-"""Long work, in processes that can be held, made to step, and ended."""
+"""Long work in processes that can be paused, stepped and ended."""
 
 from pin_metaik.processes.crew import Crew, Run, Stage
 from pin_metaik.processes.wire import Order, Told, Work

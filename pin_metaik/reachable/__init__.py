@@ -1,4 +1,4 @@
-"""What a chain can reach: maps of positions and orientations, and where to put its base."""
+"""The workspace of a chain: maps of reachable positions and orientations, and the best place for its base."""
 
 from pin_metaik.reachable.grid import Grid, spread_rotations
 from pin_metaik.reachable.picture import draw_reachability, save_reachability

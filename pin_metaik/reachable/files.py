@@ -1,4 +1,4 @@
-"""Maps in files: NumPy's ``.npz``, or a Parquet table with a row for each pose, for whatever reads tables."""
+"""Files of maps: NumPy's ``.npz``, or a Parquet table with a row for each pose."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.files import read_arrays
+from pin_metaik.files import HEAVIEST, read_arrays
 from pin_metaik.ik import IKStatus
 from pin_metaik.lookup import need
 from pin_metaik.output import replaced, writable
@@ -105,18 +105,26 @@ def _write_parquet(path: Path, arrays: Arrays) -> None:
 
 
 def _read_parquet(path: Path) -> Arrays:
+    import pyarrow as pa
     from pyarrow import parquet
 
-    table = parquet.read_table(path)
+    try:
+        with parquet.ParquetFile(path) as file:
+            rows = file.metadata
+            if sum(rows.row_group(i).total_byte_size for i in range(rows.num_row_groups)) > HEAVIEST:
+                raise ValueError(f"unpacked it has more than {HEAVIEST >> 20:,} MiB")
+            table = file.read()
+    except pa.ArrowException as reason:
+        raise ValueError(str(reason)) from None
     said = json.loads((table.schema.metadata or {})[b"reachability"])
     k = math.prod(said["shape"])
     names = {None if one is None else one.value: number for number, one in enumerate(STATUSES)}
-    rows = {name: table.column(name).to_numpy().reshape(k, -1) for name in ("x", "y", "z", "manipulability")}
+    values = {name: table.column(name).to_numpy().reshape(k, -1) for name in ("x", "y", "z", "manipulability")}
     return {
-        "positions": np.column_stack([rows[axis][:, 0] for axis in "xyz"]),
+        "positions": np.column_stack([values[axis][:, 0] for axis in "xyz"]),
         "orientations": np.array(said["orientations"], dtype=float).reshape(-1, 3, 3),
         "status": np.array([names[one] for one in table.column("status").to_pylist()]).reshape(k, -1),
-        "manipulability": rows["manipulability"],
+        "manipulability": values["manipulability"],
         "shape": np.array(said["shape"]),
         "seconds": np.array(said["seconds"]),
     }

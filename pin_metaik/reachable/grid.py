@@ -1,4 +1,4 @@
-"""Positions and orientations that a map of what can be reached asks for."""
+"""Grids of positions and orientations for maps."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MOST = 10_000_000  # positions of a grid
 @checked
 @dataclass(frozen=True)
 class Grid:
-    """Positions at equal distances in a box, both ends included where they are a multiple of the spacing apart.
+    """A regular grid of positions in a box, including its upper end where the width is a multiple of the spacing.
 
     Attributes:
         lower: Least x, y and z, m, in the world.
@@ -41,7 +41,7 @@ class Grid:
         positive("spacing", self.spacing)
         if not (lower <= upper).all():
             raise InvalidBounds(
-                f"the lower corner of a grid is not above its upper one, got {self.lower}, {self.upper}"
+                f"a grid has finite corners, the lower corner not above the upper one, got {self.lower}, {self.upper}"
             )
         if np.prod((upper - lower) / self.spacing + 1.0) > MOST:
             raise InvalidSetting(f"a grid has at most {MOST:,} positions: take a larger spacing than {self.spacing}")
@@ -49,10 +49,10 @@ class Grid:
     @staticmethod
     @checked
     def around(chain: Chain, spacing: float) -> Grid:
-        """All positions that a chain could reach at most, at whole multiples of a spacing (m).
+        """A grid around all positions that a chain can possibly reach, at whole multiples of a spacing (m).
 
         Args:
-            chain: Whose first frame is to be placed.
+            chain: The chain whose first frame is placed.
             spacing: Distance between neighbours, m.
 
         Raises:
@@ -62,7 +62,7 @@ class Grid:
         positive("spacing", spacing)
         reach = chain.reach(0, False)
         if not math.isfinite(reach.most):
-            raise InvalidSetting("nothing bounds how far this chain reaches: give a grid its corners")
+            raise InvalidSetting("the reach of this chain is not bounded: make a Grid of two corners")
         low, high = (np.floor(side * (reach.anchor + side * reach.most) / spacing) * side for side in (-1.0, 1.0))
         a, b, c = (spacing * low).tolist()
         d, e, f = (spacing * high).tolist()

@@ -1,16 +1,15 @@
-"""Parts of a map in a folder, so that work goes on where it stopped."""
+"""Parts of a map in a folder, from which interrupted work resumes."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.files import read_json
+from pin_metaik.files import read_arrays, read_json
 from pin_metaik.output import replace_text, replaced
 
 QUESTION = "question.json"
@@ -31,7 +30,7 @@ class Kept:
         self._folder = folder
         path, question = folder / QUESTION, {"digest": digest}
         if path.exists() and read_json(path, InvalidSetting) != question:
-            raise InvalidSetting(f"{folder} holds the map of another question: choose another folder")
+            raise InvalidSetting(f"{folder} holds a map that was made with other arguments: choose another folder")
         replace_text(path, json.dumps(question) + "\n")
 
     def _path(self, number: int) -> Path:
@@ -40,9 +39,9 @@ class Kept:
     def read(self, number: int, shape: tuple[int, ...]) -> Answer | None:
         """A part; None if it is not there, or was cut off while it was written."""
         try:
-            with np.load(self._path(number), allow_pickle=False) as file:
-                status, dexterity = file["status"], file["manipulability"]
-        except (OSError, ValueError, KeyError, EOFError, BadZipFile):
+            arrays = read_arrays(self._path(number), InvalidSetting, "a part of a map")
+            status, dexterity = arrays["status"], arrays["manipulability"]
+        except (InvalidSetting, KeyError):
             return None
         return (status, dexterity) if status.shape == dexterity.shape == shape else None
 

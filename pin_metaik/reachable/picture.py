@@ -19,17 +19,17 @@ NONE = "#f2f0ec"  # where nothing is reached
 
 @checked
 def save_reachability(found: Reachability, path: str | Path, *, slices: int = 4) -> Path:
-    """Draw a map and write it; the suffix says as what (``.png``, ``.svg``, ``.pdf``).
+    """Draw a map to a file; its suffix gives the format (``.png``, ``.svg``, ``.pdf``).
 
     Args:
         found: The map.
-        path: Where to.
+        path: The file.
         slices: How many heights of a grid to show, evenly from the lowest to the highest with anything reached.
 
     Raises:
         MissingExtra: If matplotlib is not installed.
         CannotWrite: If the file cannot be written.
-        InvalidSetting: If there is not at least one slice, or the file is none of a picture.
+        InvalidSetting: If there is not at least one slice, or the suffix is not one of a picture.
     """
     few("slices", slices)
     where = picture_file(path)
@@ -43,17 +43,17 @@ def save_reachability(found: Reachability, path: str | Path, *, slices: int = 4)
 def draw_reachability(figure: Any, found: Reachability, *, slices: int = 4) -> None:
     """Draw a map into an empty ``matplotlib.figure.Figure``.
 
-    The upper row has the share of orientations that is reached, the lower one the best manipulability. Of a grid, each
-    column is a height; of a list of positions there is one column, seen from above.
+    The upper row shows the share of orientations that is reached, the lower one the greatest manipulability. For a
+    grid, each column is a height; for a list of positions there is one column, seen from above.
 
     Args:
-        figure: Of matplotlib.
+        figure: The empty figure.
         found: The map.
         slices: How many heights of a grid to show.
 
     Raises:
         MissingExtra: If matplotlib is not installed.
-        InvalidSetting: If there is not at least one slice, or the figure is none.
+        InvalidSetting: If there is not at least one slice, or the figure is not one of matplotlib.
     """
     need_plots()
     few("slices", slices)

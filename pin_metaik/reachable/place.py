@@ -36,16 +36,16 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class BasePlacement:
-    """A place for a robot's base.
+    """A placement of a robot's base.
 
     Attributes:
         x: m, of the origin of the robot's model in the world.
         y: m.
         yaw: rad, about the world's z.
-        results: The answer to each pose, in the robot's own frame: ``results[i].q`` is how it stands there.
-        manipulability: (k,) Yoshikawa's measure at each answer, NaN where the pose is not reached.
-        cost: What was minimised: a pose that is not reached costs 1 to 2, one that is -1 to 0.
-        evaluations: Places that were tried.
+        results: The result for each pose, with targets in the robot's own frame; ``results[i].q`` is the configuration.
+        manipulability: (k,) Yoshikawa's measure at each solution, NaN where the pose is not reached.
+        cost: The minimised cost: the sum over the poses, 1 to 2 for one that is not reached, -1 to 0 for one that is.
+        evaluations: Number of placements tried.
         seconds: Time taken, s.
         interrupted: Whether a watch ended the search.
     """
@@ -62,17 +62,17 @@ class BasePlacement:
 
     @property
     def pose(self) -> pin.SE3:
-        """Where the robot's model is in the world."""
+        """Pose of the robot's model in the world."""
         return _placement(np.array([self.x, self.y, self.yaw]))
 
     @property
     def reached(self) -> int:
-        """How many of the poses are reached."""
+        """Number of poses that are reached."""
         return sum(result.success for result in self.results)
 
     @property
     def success(self) -> bool:
-        """Whether all of them are."""
+        """Whether all poses are reached."""
         return self.reached == len(self.results)
 
     def __bool__(self) -> bool:
@@ -105,27 +105,29 @@ def place_base(
     rng: Rng = None,
     watch: Watch | None = None,
 ) -> BasePlacement:
-    """Find where on the floor to put a robot so that it reaches poses, as many as it can and with room to move.
+    """Find where on the floor to put a robot so that it reaches as many poses as possible, with good manipulability.
 
-    A metaheuristic searches x, y and yaw. Each place is tried for all poses: one that is not reached costs 1, and up
-    to 1 more by how far it is missed; one that is reached is worth m / (m + 0.1) of its manipulability m.
+    A metaheuristic searches x, y and yaw. The cost of a placement is a sum over all poses: 1 for one that is not
+    reached, plus up to 1 by how far it is missed; -m / (m + 0.1) for one that is reached with manipulability m.
 
     Args:
-        chain: The joints to move and the frame to place; the origin of its model is what is put somewhere.
+        chain: The joints to move and the frame to place; the origin of its model is the base that is placed.
         targets: k targets in the world, as for ``solve_ik``.
-        region: Box of x, y (m) and yaw (rad) to search; default: as far round the targets as the chain reaches, any
+        region: Box of x, y (m) and yaw (rad) to search; default: as far around the targets as the chain reaches, any
             yaw.
         q0: (nq,) configuration every search starts from; default: the chain's reference.
-        solver: How a pose is solved in the end; while places are compared, with a budget of 300 evaluations.
-        world: What must not collide. Its obstacles stand where they are in the world while the robot is put elsewhere;
-            a place at which the robot's base overlaps one reaches nothing.
+        solver: How poses are solved at the placement chosen; while placements are compared it has 300 evaluations a
+            pose.
+        world: World in which nothing must collide. Its obstacles stay where they are while the robot is moved; a
+            placement at which the robot's base overlaps one reaches no pose.
         algorithm: A metaheuristic's name or object.
-        budget: Places to try.
+        budget: Its evaluations are the number of placements to try.
         rng: Seed or generator; ``None`` is a fixed seed.
-        watch: Called after every generation with places tried and in all, and the best cost; True ends the search.
+        watch: Called after every generation with the placements tried, their total and the best cost; returning True
+            ends the search.
 
     Raises:
-        InvalidTarget: If there are no targets, or one of them is none.
+        InvalidTarget: If there are no targets, or one of them is not valid.
         InvalidBounds: If the region is not a box of three numbers.
         UnknownName: If there is no such metaheuristic.
         InvalidSetting: If the world is another model's than the chain.

@@ -1,4 +1,4 @@
-"""A map of what a chain can reach."""
+"""The reachability map of a chain."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from pin_metaik.reachable.files import STATUSES, read_map, write_map
 
 @dataclass(frozen=True, eq=False)
 class Reachability:
-    """Which of k positions a chain reaches in which of m orientations.
+    """A map of which of k positions a chain reaches in which of m orientations.
 
     Attributes:
         positions: (k, 3) m, in the world.
-        orientations: (m, 3, 3) of the chain's frame in the world; (0, 3, 3): any orientation counted, m is 1.
-        status: (k, m) why each search ended, as numbers of ``STATUSES``; 0: not looked at.
-        manipulability: (k, m) Yoshikawa's measure sqrt(det(J J')) at the solution that was found, J of the axes that
-            count, in m and rad; NaN where there is none.
-        shape: Positions along x, y and z of a grid; (k, 1, 1) where they were a list.
-        seconds: Time taken, s, in the call that made it.
+        orientations: (m, 3, 3) of the chain's frame in the world; (0, 3, 3) if any orientation would do: then m is 1.
+        status: (k, m) why each search ended, as indices into ``STATUSES``; 0: not looked at.
+        manipulability: (k, m) Yoshikawa's measure sqrt(det(J J')) at the solution found, with the rows of J (m and rad)
+            of the axes that are not free; NaN without a solution.
+        shape: Number of positions along x, y and z of a grid; (k, 1, 1) for a list of positions.
+        seconds: Time taken by the call, s.
     """
 
     positions: NDArray[np.float64]
@@ -51,13 +51,13 @@ class Reachability:
 
     @property
     def share(self) -> NDArray[np.float64]:
-        """(k,) which share of the orientations is reached at each position: the reachability index."""
+        """(k,) share of the orientations that is reached at each position: the reachability index."""
         share: NDArray[np.float64] = self.reached.mean(axis=1)
         return share
 
     @property
     def best(self) -> NDArray[np.float64]:
-        """(k,) the best manipulability at each position, 0 where nothing is reached."""
+        """(k,) the greatest manipulability at each position, 0 where nothing is reached."""
         best: NDArray[np.float64] = np.where(self.reached, self.manipulability, 0.0).max(axis=1)
         return best
 
@@ -68,10 +68,10 @@ class Reachability:
 
     @checked
     def save(self, path: str | Path) -> Path:
-        """Write it as its ending says: NumPy's compressed ``.npz``, or ``.parquet``, a table with a row for each pose.
+        """Write the map as NumPy's compressed ``.npz``, or as ``.parquet``, a table with a row for each pose.
 
         Raises:
-            InvalidSetting: If the ending is neither.
+            InvalidSetting: If the suffix is another one.
             MissingExtra: If it is Parquet and pyarrow is not installed.
             CannotWrite: If the file cannot be written.
         """
@@ -85,7 +85,7 @@ class Reachability:
         """Read what ``save`` has written.
 
         Raises:
-            InvalidSetting: If there is no such file, or it holds no map.
+            InvalidSetting: If there is no such file, or it does not hold a map.
             MissingExtra: If it is Parquet and pyarrow is not installed.
         """
         arrays = read_map(path)

@@ -1,4 +1,4 @@
-"""Making a map of what a chain can reach: part by part, on all cores or a cluster, and going on where it stopped."""
+"""Making a reachability map part by part, on all cores or a cluster, with resumption after an interruption."""
 
 from __future__ import annotations
 
@@ -167,32 +167,32 @@ def reachability(
 ) -> Reachability:
     """Map which positions a chain reaches in which orientations, and how well it can move there.
 
-    Most of what cannot be reached is proved so, in microseconds to milliseconds; the map keeps proved and not found
-    apart. It depends neither on ``jobs`` nor on the backend nor on interruptions.
+    Most unreachable poses are proved unreachable, in microseconds to milliseconds; the map distinguishes them from
+    poses that were only not found. It does not depend on ``jobs``, the backend or interruptions.
 
     Args:
         chain: The joints to move and the frame to place, one.
         grid: Positions in the world: a ``Grid``, or (k, 3) m.
-        orientations: Of the frame in the world: (m, 3, 3), or how many to spread evenly over all; ``None``: positions
-            alone, at any orientation.
+        orientations: Of the frame in the world: (m, 3, 3), or how many to spread evenly over all rotations; ``None``:
+            positions alone, at any orientation.
         q0: (nq,) configuration every search starts from; default: the chain's reference.
         solver: How to search; default ``IKSolver()``. With ``select="manipulability"`` the map has the best
             manipulability of each pose, which takes many times as long, else that of the solution found.
         world: What must not collide.
-        jobs: Processes; -1: one a core; ``None``: threads of this process, one a core, which is quickest without a
-            world. Processes, and other backends, need the extra ``compare``.
-        backend: joblib's: ``"loky"`` for processes here, ``"dask"`` for a Dask cluster (the extra ``cluster``), whose
-            workers are used whatever ``jobs``.
+        jobs: Number of processes; -1: one for each core; ``None``: threads of this process, one for each core, which is
+            quickest without a world. Processes and other backends need the extra ``compare``.
+        backend: Of joblib: ``"loky"`` for processes on this machine, ``"dask"`` for a Dask cluster (the extra
+            ``cluster``), all of whose workers are used.
         scheduler: Address of the Dask scheduler, e.g. ``"tcp://node1:8786"``.
-        folder: Where parts of the map are kept as soon as they are done, and ``reachability.npz`` in the end: the same
-            call goes on from there. Default: nothing is kept.
+        folder: Folder in which parts of the map are stored as soon as they are done, and ``reachability.npz`` at the
+            end; the same call resumes from there. Default: nothing is stored.
         rng: Seed or generator; ``None`` is a fixed seed.
-        watch: Called after every part with poses done and in all; True ends the work: the rest is "not looked at".
+        watch: Called after every part with the poses done and in all; returning True ends the work, and the remaining
+            poses are "not looked at".
 
     Raises:
         InvalidSetting: If the chain has several frames, there are no positions or orientations, the world is another
-            model's, ``jobs`` are none, the scheduler cannot be reached, or the folder holds the map of another
-            question.
+            model's, ``jobs`` is 0, the scheduler cannot be reached, or the folder holds another map.
         InvalidConfiguration: If ``q0`` is not a configuration of the model.
         MissingExtra: If joblib or distributed is needed and not installed.
         CannotWrite: If the folder cannot be made or written into.

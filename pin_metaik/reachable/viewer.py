@@ -1,4 +1,4 @@
-"""Looking at a map in the browser, with the robot in it: an extra."""
+"""A map in the browser, with the robot in it (the extra ``viewer``)."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from pin_metaik.collision import CollisionWorld
 from pin_metaik.collision.viewer import WorldViewer, open_viewer
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.reachable.result import Reachability
+
+__all__ = ["show_reachability"]
 
 FILLED = 0.3  # edge of the cube at a position, as a share of the distance to the next one
 ASIDE, DISTANCE = np.array([0.35, -1.0, 0.45]), 0.9  # where the page looks from, in sizes of the map
@@ -26,13 +28,13 @@ FACES = np.array(
 def show_reachability(found: Reachability, world: CollisionWorld, port: int = 8080) -> WorldViewer:
     """Show a map at http://localhost:port, to this machine only: a cube at each position that is reached.
 
-    The colour is the best manipulability there, from violet to yellow. The robot stands in it, and what is around it;
-    what is before a plane y = constant, at first through the middle, is cut off, and a slider moves that.
+    The colour is the greatest manipulability there, from violet to yellow. The robot and its obstacles are shown as
+    well. Cubes in front of a plane y = constant are cut off; the plane begins in the middle, and a slider moves it.
 
     Args:
         found: The map.
         world: The robot with its obstacles; ``CollisionWorld(robot)`` for the robot alone.
-        port: Where; 0 for any port that is free.
+        port: The port; 0 for any free port.
 
     Returns:
         The viewer, as of ``collision.viewer.open_viewer``: ``viewer.viewer`` is the server.

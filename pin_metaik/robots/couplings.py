@@ -164,7 +164,7 @@ def coupled(model: pin.Model, couplings: Couplings) -> tuple[pin.Model, list[str
             elif high - low > NO_ROOM:
                 remarks.append(
                     f"joint {name!r} is {multiplier:g} * {driver!r} + {offset:g}, "
-                    f"and its limits {list(ranges[name])} leave that no room: they are not kept"
+                    f"which its limits {list(ranges[name])} exclude: these limits are ignored"
                 )
         bound[driver] = low, high
     for name, (low, high) in bound.items():
@@ -200,7 +200,7 @@ def _wrong(tag: Coupling, kinds: Mapping[str, str]) -> str:
         return f"joint {tag.follower!r} mimics {tag.leader!r}, which does not exist{hint}"
     for name in (tag.follower, tag.leader):
         if kinds[name] not in (*SINGLE, "fixed"):
-            return f"joint {tag.follower!r} mimics {tag.leader!r}, and {name!r} is {kinds[name]}, not one coordinate"
+            return f"joint {tag.follower!r} mimics {tag.leader!r}, but {name!r} ({kinds[name]}) has several coordinates"
     return ""
 
 

@@ -7,7 +7,7 @@ import re
 import tempfile
 import xml.etree.ElementTree as ET
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,9 +16,9 @@ from weakref import WeakKeyDictionary
 
 import pinocchio as pin
 
-from pin_metaik import ply
 from pin_metaik.arguments import checked, checked_as
 from pin_metaik.errors import InvalidModel
+from pin_metaik.mesh_files import check_mesh
 from pin_metaik.optimize.settings import one_of
 from pin_metaik.robots import plausible
 from pin_metaik.robots.couplings import NO_COUPLINGS, coupled, make_ready, read_couplings, with_own_names
@@ -26,7 +26,7 @@ from pin_metaik.robots.loops import Loops, equalities_not_read, read_loops
 from pin_metaik.robots.macros import sign_of_xacro
 from pin_metaik.robots.prints import caught_prints, explain
 from pin_metaik.robots.spelling import misspelt
-from pin_metaik.robots.text import outermost, parsed
+from pin_metaik.robots.text import mjcf_meshes, outermost, parsed
 from pin_metaik.robots.wording import Shapes, motion_of, negative_sizes, shapes_of
 
 Base = Literal["fixed", "free flyer", "planar"]
@@ -40,13 +40,13 @@ KINDS: dict[Shapes, pin.GeometryType] = {
 @checked_as(InvalidModel)
 @dataclass(frozen=True)
 class Description:
-    """The source of a model as plain values, from which another process makes the same model.
+    """The source of a model as plain values, from which another process can build the same model.
 
     Attributes:
         text: The URDF, or the MJCF.
-        source: The file it comes from, from which meshes are looked for; None for text that comes from no file.
-        base: What joins the base to the world.
-        mimic: Couple joints with a mimic tag to the joint they follow.
+        source: The file it was read from, relative to which meshes are looked for; None if it was given as text.
+        base: The joint between the world and the base.
+        mimic: Whether joints with a mimic tag follow their joint instead of being free.
     """
 
     text: str = field(repr=False)
@@ -60,12 +60,12 @@ class Description:
 
     @property
     def what(self) -> str:
-        """The file, as messages call it."""
+        """Its name in messages."""
         return str(self.source or f"the {'MJCF' if self.is_mjcf else 'URDF'} text")
 
     @property
     def is_mjcf(self) -> bool:
-        """Whether it is in MuJoCo's language."""
+        """Whether it is MJCF, MuJoCo's format."""
         return outermost(self.text) == "mujoco"
 
     def model(self) -> pin.Model:
@@ -77,7 +77,7 @@ class Description:
         return self.read()[0]
 
     def read(self) -> tuple[pin.Model, list[str]]:
-        """The model, and what has to be said of it: what was guessed, mended, or could not be held.
+        """The model, and remarks on what was assumed, repaired or ignored.
 
         Raises:
             InvalidModel: If the text is not a robot; the message has the parser's own reason.
@@ -88,14 +88,14 @@ class Description:
 
     @checked
     def geometry(self, model: pin.Model, shapes: Shapes) -> tuple[pin.GeometryModel, list[str]]:
-        """Geometry of the model, meshes included, and what has to be said of it.
+        """Geometry of the model, meshes included, and remarks on what was assumed, repaired or ignored.
 
         ``package://`` and relative paths are looked up in the folders above ``source``, the nearest first, then in
         ROS_PACKAGE_PATH.
 
         Raises:
             InvalidModel: If a mesh is missing or unreadable, or a shape cannot be read; the message names it.
-            InvalidSetting: If ``shapes`` are neither.
+            InvalidSetting: If ``shapes`` is not one of the two kinds of geometry.
         """
         one_of("shapes", shapes, Shapes)
         geometry = self._mjcf_geometry(model, shapes) if self.is_mjcf else self._urdf_geometry(model, shapes)
@@ -115,7 +115,7 @@ class Description:
         return tree
 
     def free_mimics(self) -> tuple[str, ...]:
-        """Joints that move and carry a mimic tag which the model does not hold: all, or those that mean nothing."""
+        """Joints with a mimic tag that are free in the model: those whose tag is invalid or, without ``mimic``, all."""
         if self.is_mjcf:
             return ()
         motion, _ = motion_of(self.tree(), self.what)
@@ -147,7 +147,7 @@ class Description:
         children = {joint.get("name", ""): child.get("link", "") for joint in motion.iterfind("joint")
                     if (child := joint.find("child")) is not None}  # fmt: skip
         if lost := [link for name, link in children.items() if not model.existFrame(name)]:
-            raise InvalidModel(f"{self.what} has links that hang on no root, but on each other: {', '.join(lost)}")
+            raise InvalidModel(f"{self.what} has links that are joined in a circle, without a root: {', '.join(lost)}")
         if renamed:
             with_own_names(model)
         model, contradictions = coupled(model, couplings)
@@ -164,7 +164,7 @@ class Description:
         shaped, counts = shapes_of(tree, shapes)
         text = ET.tostring(shaped, encoding="unicode")
         folders = [str(folder) for folder in (self.source or Path("here")).absolute().parents]
-        _check_ply(tree, folders)
+        _check_meshes((mesh.get("filename", "") for mesh in tree.iter("mesh")), folders)
         with caught_prints() as prints:
             try:
                 geometry = pin.buildGeomFromUrdfString(model, text, KINDS[shapes], package_dirs=folders)
@@ -182,11 +182,11 @@ class Description:
 
     def _read_mjcf(self) -> tuple[pin.Model, list[str]]:
         if self.base != "fixed":
-            raise InvalidModel(f"{self.what} is MJCF: what joins its base to the world is said there, by <freejoint/>")
+            raise InvalidModel(f"{self.what} is MJCF, which defines the joint of its base itself, e.g. by <freejoint/>")
         with self._file() as path, caught_prints() as prints:
             try:
                 model = pin.buildModelFromMJCF(path)
-                _ = list(model.names), [frame.name for frame in model.frames]  # ValueError: not text
+                _ = model.name, list(model.names), [frame.name for frame in model.frames]  # ValueError: not text
             except (ValueError, RuntimeError, LookupError) as error:
                 why = (prints() or explain(error)).replace(path, self.what)
                 raise InvalidModel(f"{self.what} is not MJCF that can be read: {why}") from None
@@ -198,6 +198,7 @@ class Description:
         return model, [*left, *printed]
 
     def _mjcf_geometry(self, model: pin.Model, shapes: Shapes) -> pin.GeometryModel:
+        _check_meshes(mjcf_meshes(self.text), [str((self.source or Path("here")).absolute().parent)])
         with self._file() as path, caught_prints():
             try:
                 return pin.buildGeomFromMJCF(model, path, KINDS[shapes])
@@ -225,15 +226,13 @@ def description_of(model: pin.Model) -> Description | None:
     return _MADE_FROM.get(model)
 
 
-def _check_ply(tree: ET.Element, folders: list[str]) -> None:
-    """Read meshes in PLY, where they may be, before Pinocchio does: a damaged one would end the process.
+def _check_meshes(names: Iterable[str], folders: list[str]) -> None:
+    """Look at files of meshes, where they may be, before Pinocchio reads them.
 
     Raises:
-        InvalidModel: One cannot be read.
+        InvalidModel: One is damaged such that reading it would end the process, or never end.
     """
     folders = [*folders, *os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep)]
-    for name in {mesh.get("filename", "") for mesh in tree.iter("mesh")}:
-        if name.lower().endswith(ply.SUFFIX):
-            tail = re.sub(r"^\w+://", "", name)
-            for path in filter(Path.is_file, (Path(folder, tail) for folder in folders)):
-                ply.read_ply(path, InvalidModel)
+    for tail in {re.sub(r"^\w+://", "", name) for name in names}:
+        for folder in folders:
+            check_mesh(Path(folder, tail), InvalidModel)

@@ -20,7 +20,7 @@ JointType = Literal["revolute", "continuous", "prismatic"]
 @checked_as(InvalidTable)
 @dataclass(frozen=True)
 class DHRow:
-    """One joint with its four constants, of which it varies one: q is added to theta, or to d of a prismatic joint.
+    """One joint and its four DH constants; q is added to theta, or to d for a prismatic joint.
 
     Attributes:
         a: Length along x (m); in the modified convention that of link i-1.
@@ -32,7 +32,7 @@ class DHRow:
         upper: Greatest q (rad or m); inf if continuous.
         velocity: Greatest speed (rad/s or m/s).
         effort: Greatest torque or force (N m or N).
-        name: Name of the joint; empty for joint_1, joint_2, ...
+        name: Name of the joint; if empty, joint_1, joint_2, ...
 
     Raises:
         InvalidTable: If a number is not finite, limits are crossed, or a joint has limits and is continuous.
@@ -99,16 +99,16 @@ class DHTable:
 
     Attributes:
         name: Name of the robot.
-        convention: "standard", A = Rz(theta) Tz(d) Tx(a) Rx(alpha) (Denavit, Hartenberg 1955), or "modified",
-            A = Rx(alpha) Tx(a) Rz(theta) Tz(d) with a and alpha of the link before (Craig 1986).
+        convention: "standard", A = Rz(theta) Tz(d) Tx(a) Rx(alpha) (Denavit and Hartenberg 1955), or "modified", A =
+            Rx(alpha) Tx(a) Rz(theta) Tz(d) with a and alpha of the previous link (Craig 1986).
         rows: One row per joint, from the base.
-        base: Frame 0 in the world.
-        tool: Tool frame in the frame of the last row.
+        base: Pose of frame 0 in the world.
+        tool: Pose of the tool frame in the frame of the last row.
         description: The robot, and the assumptions of the table.
         source: Where its numbers were published.
 
     Raises:
-        InvalidTable: If it has no rows, or two of its joints have one name.
+        InvalidTable: If it has no rows, or two of its joints have the same name.
     """
 
     name: str
@@ -188,4 +188,4 @@ def _shift(axis: Literal["x", "z"], length: float) -> Array:
 
 def _one_of(key: str, value: object, known: tuple[str, ...]) -> None:
     if value not in known:
-        raise InvalidTable(f"{key} = {value!r} is none of {', '.join(known)}")
+        raise InvalidTable(f"{key} = {value!r} is not one of {', '.join(known)}")

@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 
 import pinocchio as pin
 
-from pin_metaik.errors import InvalidModel
+from pin_metaik.robots.text import mjcf_tree
 
 Loops: TypeAlias = tuple[Any, ...]
 """Of ``pin.PointAnchorConstraintModel`` and ``pin.FrameAnchorConstraintModel``."""
@@ -37,7 +37,4 @@ def equalities_not_read(text: str) -> list[str]:
 
 
 def _equalities(text: str, tag: str) -> list[ET.Element]:
-    try:
-        return ET.fromstring(text).findall(f"./equality/{tag}")
-    except ET.ParseError as error:
-        raise InvalidModel(f"this MJCF is not well-formed XML: {error}") from None
+    return mjcf_tree(text).findall(f"./equality/{tag}")

@@ -1,4 +1,4 @@
-"""Xacro, the language of macros that URDF files are written in: recognised, and expanded by the package ``xacro``."""
+"""Xacro, the macro language of URDF files: detected, and expanded by the package ``xacro``."""
 
 from __future__ import annotations
 

@@ -63,8 +63,8 @@ def reduce_model(model: pin.Model) -> Reduced:
         return type(description).model, (description,)
     names = ", ".join(sorted({f"{model.names[f.joint]!r} ({f.kind})" for f in followers}))
     raise InvalidModel(
-        f"the model {model.name!r} cannot be pickled, as Pinocchio cannot make its joints that follow others anew: "
-        f"{names}; pickle what it was built from, and build it again there"
+        f"the model {model.name!r} cannot be pickled, because Pinocchio cannot restore its mimic joints: "
+        f"{names}; pickle its source, and build the model again from that"
     )
 
 

@@ -1,4 +1,4 @@
-"""What C++ prints on file descriptor 2, kept from the terminal: urdfdom explains itself nowhere else."""
+"""Messages that C++ prints on file descriptor 2, captured: urdfdom explains its errors nowhere else."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ class Robot:
         frame: Default tip frame: one that at least one joint moves, under a name no other link has.
         description: The source of the model: plain values that pickle, where a model with mimic joints does not.
         srdf: File with reference configurations and disabled collisions, or None.
-        remarks: What was guessed, mended or could not be held in reading it; ``load_robot`` warns of each.
+        remarks: What was assumed, repaired or ignored while reading it; ``load_robot`` warns of each.
     """
 
     name: str
@@ -49,7 +49,7 @@ class Robot:
 
     @property
     def urdf(self) -> str:
-        """Its URDF text, or MJCF if it comes as that; that of a DH table is written from it."""
+        """Its URDF text, or MJCF text if it was one; for a DH table the URDF made from it."""
         return self.description.text
 
     @property
@@ -81,12 +81,12 @@ class Robot:
 
     @property
     def free_mimics(self) -> tuple[str, ...]:
-        """Joints that should follow another one by the URDF, but are free in the model."""
+        """Joints with a mimic tag in the URDF that are free in the model."""
         return self.description.free_mimics()
 
     @cached_property
     def loops(self) -> Loops:
-        """Closed loops of its MJCF, which the model, a tree, leaves open: ``goals.Loop`` of each closes it."""
+        """Closed loops of its MJCF, which are open in the model, a tree; the goal ``goals.Loop`` closes one."""
         return self.description.loops()
 
     def _geometry(self, shapes: Shapes) -> pin.GeometryModel:
@@ -96,7 +96,7 @@ class Robot:
 
 
 class RobotName(str):
-    """The name of a robot that can be loaded: a string, with what one wants to know of the robot.
+    """The name of a robot that can be loaded: a string with a few facts about the robot.
 
     Attributes:
         name: The string itself.
@@ -142,28 +142,30 @@ def load_robot(
 ) -> Robot:
     """Load a robot.
 
-    What was guessed or mended in reading it, and what could not be held, is a ``UserWarning`` of one line each, which
-    names the joint or link; they are also in ``robot.remarks``.
+    Whatever was assumed, repaired or ignored while reading it is a ``UserWarning`` of one line that names the joint or
+    link; these lines are also in ``robot.remarks``.
 
     Args:
         name: Name in the catalogue or in example-robot-data (also as ``robot_names`` gives it), path of a URDF, of an
             MJCF or of a DH table's ``.toml``, the text of a URDF or an MJCF, or a module that has its path as
             ``URDF_PATH`` or ``MJCF_PATH``, as those of the package robot_descriptions. A URDF may be xacro, which the
-            extra ``xacro`` expands.
+            extra ``xacro`` expands: its expressions are run as Python, so take none from strangers.
         parameters: Values that replace those of a DH table's ``[parameters]``, in the table's units, or of the
             ``<xacro:arg>`` of a xacro file.
-        free_flyer: Put the base on a free-flyer, six more coordinates, of which a chain wants limits for
-            ``root_joint.x``, ``.y`` and ``.z`` (m); otherwise the base is fixed.
-        planar: Put it on a plane, three more coordinates: limits for ``root_joint.x`` and ``.y``.
+        free_flyer: Let the base move freely: six more coordinates. A chain needs limits for ``root_joint.x``, ``.y``
+            and ``.z`` (m). Otherwise the base is fixed.
+        planar: Let the base move in a plane: three more coordinates. A chain needs limits for ``root_joint.x`` and
+            ``.y`` (m).
         mimic: Make joints with a mimic tag scaled copies of the joint they follow instead of coordinates of their own
-            (Pinocchio's ``aba`` refuses such models); their limits bind the joint they follow. Joints whose tag means
-            nothing stay free; ``robot.free_mimics`` names them.
+            (Pinocchio's ``aba`` refuses such models); their limits then bound the joint they follow. Joints whose tag
+            is invalid stay free; ``robot.free_mimics`` names them.
 
     Raises:
-        UnknownName: If nothing is so named, or the table has no such parameter.
+        UnknownName: If there is no robot of that name, or the table has no such parameter.
         InvalidTable: If the DH table makes no sense.
-        InvalidModel: If the file is missing, is not a robot, no joint of it moves anything, or the base is both.
-        MissingExtra: If it is xacro, and xacro is not installed.
+        InvalidModel: If the file is missing or does not describe a robot, if no joint of it moves a frame, or if both
+            ``free_flyer`` and ``planar`` are set.
+        MissingExtra: If it is a xacro file and xacro is not installed.
     """
     if free_flyer and planar:
         raise InvalidModel("a base is on a free-flyer or on a plane: give free_flyer or planar, not both")

@@ -40,7 +40,9 @@ ALIKE = 0.75  # by difflib, 1 for equal
 def misspelt(robot: ET.Element) -> list[str]:
     """Ignored elements and attributes in links and joints of a URDF: a remark for each, with the likely spelling."""
     remarks = [*_parts(robot, "the robot")]
-    remarks += [f"<{e.tag}> {e.get('name', '')!r}: loops are not held" for e in robot if e.tag in _LOOPS]
+    remarks += [
+        f"<{e.tag}> {e.get('name', '')!r}: a URDF has no loops, this one stays open" for e in robot if e.tag in _LOOPS
+    ]
     for element in robot:
         if element.tag in ("link", "joint"):
             place = f"{element.tag} {element.get('name', '')!r}"

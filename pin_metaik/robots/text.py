@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
+from collections.abc import Iterator
 from pathlib import Path
 from xml.parsers import expat
 
 from pin_metaik.errors import InvalidModel
-from pin_metaik.files import DEEPEST
+from pin_metaik.files import DEEPEST, read_bytes
 
 _MARKS = {
     b"\xef\xbb\xbf": "utf-8-sig",
@@ -39,11 +40,7 @@ def read_text(path: Path) -> str:
     Raises:
         InvalidModel: If there is no such file, it cannot be read, or is not text.
     """
-    try:
-        text = decoded(path.read_bytes())
-    except OSError as error:
-        raise InvalidModel(f"cannot read {path}: {error.strerror}") from None
-    text, end, _ = text.partition("\0")  # where C's strings end
+    text, end, _ = decoded(read_bytes(path, InvalidModel)).partition("\0")  # where C's strings end
     if end and not outermost(text):
         raise InvalidModel(f"{path} is not a URDF: it is not text")
     if text.startswith(_POINTER):
@@ -118,3 +115,24 @@ def parsed(text: str, what: str) -> ET.Element:
     except expat.ExpatError as error:
         raise InvalidModel(f"{what} is not well-formed XML: {error}") from None
     return builder.close()
+
+
+def mjcf_tree(text: str) -> ET.Element:
+    """The elements of an MJCF.
+
+    Raises:
+        InvalidModel: If they do not close; the message has the line.
+    """
+    try:
+        return ET.fromstring(text)
+    except ET.ParseError as error:
+        raise InvalidModel(f"this MJCF is not well-formed XML: {error}") from None
+
+
+def mjcf_meshes(text: str) -> Iterator[str]:
+    """Where the meshes of an MJCF may be, from the folder that it is in."""
+    tree = mjcf_tree(text)
+    folders = [one.get(key, "") for one in tree.iter("compiler") for key in ("meshdir", "assetdir")]
+    for name in (mesh.get("file", "") for mesh in tree.iter("mesh")):
+        for folder in {"", *folders}:
+            yield from (str(Path(folder, name)), str(Path(folder, Path(name).name)))  # the latter with strippath

@@ -1,4 +1,4 @@
-"""Times for paths: the quickest motion within limits of speed and acceleration, or one within limits of jerk as well.
+"""Time parametrisation of paths: the quickest motion within limits of velocity and acceleration, or one also of jerk.
 
 from pin_metaik import timing
 

@@ -1,4 +1,4 @@
-"""The quickest way along a curve within limits of speed and acceleration, by toppra."""
+"""The quickest motion along a curve within limits of speed and acceleration, by toppra."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def fastest(curve: JointCurve, limits: MotionLimits) -> SteppedProfile:
     solver = TOPPRA(constraints, _Path(curve), gridpoints=grid, parametrizer="ParametrizeConstAccel")
     _, speeds, _ = solver.compute_parameterization(0.0, 0.0)
     if speeds is None or not np.isfinite(speeds).all():
-        raise InvalidSetting("toppra finds no way along this path within the limits")
+        raise InvalidSetting("toppra finds no motion along this path within the limits")
     profile = SteppedProfile(grid, speeds)
     return profile.slowed(_excess(curve, profile, limits))
 

@@ -20,7 +20,7 @@ Share: TypeAlias = ArrayLike | None
 @checked
 @dataclass(frozen=True, eq=False)
 class MotionLimits:
-    """Limits of the motion of n joints; each the same in both directions.
+    """Velocity, acceleration and jerk limits of n joints, the same in both directions.
 
     Attributes:
         velocity: (n,) rad/s or m/s.
@@ -48,7 +48,7 @@ class MotionLimits:
     def of(chain: Chain, velocity: Share = None, acceleration: Share = None, jerk: Share = None) -> MotionLimits:
         """Limits for a chain, each one number for all joints or (n,) one a joint.
 
-        Joints that mimic one of the chain's are bound by what that one may do, and not by limits of their own.
+        Mimic joints are bounded through the joint that they follow, not by velocity limits of their own.
 
         Args:
             chain: The chain.

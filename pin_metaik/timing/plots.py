@@ -1,4 +1,4 @@
-"""A picture of a timed path: what the joints do, and what they may."""
+"""A picture of a timed path: the motion of the joints, and their limits."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a curve is gone along: where on it one is at a time."""
+"""Time profile of a curve: the position on it over time."""
 
 from __future__ import annotations
 

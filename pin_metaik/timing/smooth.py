@@ -1,4 +1,4 @@
-"""A way along a curve within limits of jerk as well, by ruckig."""
+"""A motion along a curve within limits of speed, acceleration and jerk, by ruckig."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def smooth(curve: JointCurve, limits: MotionLimits) -> SmoothProfile:
     need("timing a path with limited jerk", "timing", "ruckig")
     if curve.bent:
         raise InvalidSetting(
-            f"joint number {curve.bent[0]} would leave its limits on a smooth way between the poses: give more poses "
+            f"joint number {curve.bent[0]} would leave its limits on a smooth curve between the poses: give more poses "
             "there, or no jerk"
         )
     best = None
@@ -65,7 +65,7 @@ def smooth(curve: JointCurve, limits: MotionLimits) -> SmoothProfile:
         if trajectory is not None and (best is None or trajectory.duration < best.duration):
             best = trajectory
     if best is None:
-        raise InvalidSetting("ruckig finds no way along this path within the limits")
+        raise InvalidSetting("ruckig finds no motion along this path within the limits")
     return SmoothProfile(best)
 
 

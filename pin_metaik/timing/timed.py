@@ -1,4 +1,4 @@
-"""Paths with times: when a robot is where, within its limits."""
+"""Timed paths: motions along a path within the limits of the joints."""
 
 from __future__ import annotations
 
@@ -57,15 +57,15 @@ class TimedSamples:
 class TimedPath:
     """A motion of a chain along configurations, from rest to rest.
 
-    Between the configurations every joint follows a cubic spline; what a frame does there is what the spline makes of
-    it, and nearer to the targets the more configurations there are.
+    Between the configurations every joint follows a cubic spline; the frame then deviates from the straight line
+    between its targets, the less the more configurations there are.
 
     Attributes:
         chain: The chain.
-        limits: What it keeps at every time, not only at samples.
+        limits: Limits that the motion keeps at every instant, not only at samples.
         curve: The coordinates along the path.
-        profile: When it is where.
-        base: (nq,) where the joints outside the chain stay.
+        profile: Position along the curve over time.
+        base: (nq,) configuration with the values of the joints outside the chain.
     """
 
     chain: Chain
@@ -76,7 +76,7 @@ class TimedPath:
 
     @property
     def duration(self) -> float:
-        """s."""
+        """Duration of the motion, s."""
         return self.profile.duration
 
     @checked
@@ -84,19 +84,21 @@ class TimedPath:
         """The motion at times from 0 on, and at its end.
 
         Args:
-            every: Between two of them, s; the last one may come sooner.
+            every: Time between two samples, s; the last one may come sooner.
 
         Raises:
             InvalidSetting: If ``every`` is not above 0, or more than a million samples would be needed.
         """
         if not every > 0.0 or self.duration > MANY * every:
-            raise InvalidSetting(f"every is above 0 s and not a {MANY:,}th of {self.duration:g} s, got {every!r}")
+            raise InvalidSetting(
+                f"every is above 0 s and makes at most {MANY:,} samples of {self.duration:g} s, got {every!r}"
+            )
         count = math.ceil(self.duration / every * (1.0 - 1e-12))
         return self.at(np.append(every * np.arange(count), self.duration))
 
     @checked
     def at(self, t: ArrayLike) -> TimedSamples:
-        """The motion at times t (k,), s; before its begin and after its end it stands.
+        """The motion at times t (k,), s; before its start and after its end it is at rest.
 
         Raises:
             InvalidSetting: If ``t`` is not a row of finite numbers.
@@ -148,7 +150,7 @@ class TimedPath:
         Args:
             every: Between two points, s.
             frame: ``frame_id`` of the header.
-            stamp: When it begins, s since ROS' epoch; 0: at once, as controllers take it.
+            stamp: Time at which it begins, s since the ROS epoch; 0, which controllers take as: at once.
 
         Raises:
             InvalidSetting: A stamp below zero; see ``sample``.
@@ -181,10 +183,10 @@ class TimedPath:
 
     @checked
     def plot(self, file: str | Path) -> None:
-        """Draw coordinates, speeds and accelerations over time, with their limits, and the speeds of the frames.
+        """Plot coordinates, speeds and accelerations with their limits, and the speeds of the frames, over time.
 
         Args:
-            file: Where to; the suffix says what (``.png``, ``.svg``, ``.pdf``).
+            file: The file; its suffix gives the format (``.png``, ``.svg``, ``.pdf``).
 
         Raises:
             MissingExtra: matplotlib is not installed.

@@ -17,7 +17,7 @@ def test_it_measures_every_section(tmp_path: Path) -> None:
     done = subprocess.run([sys.executable, str(BENCHMARK), *words], capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
     page = out.read_text()
-    for section in ("Checking time", "Safety", "Free of self-collision", "Among obstacles", "What each means brings"):
+    for section in ("Checking time", "Safety", "Free of self-collision", "Among obstacles", "Each method on its own"):
         assert f"## {section}" in page
     assert "| shelf | panda |" in page
 

@@ -39,12 +39,12 @@ def call(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
 
 NONSENSE: list[tuple[tuple[object, ...], str]] = [
     (("export", "panda", "-o", "arm.c"), "has no closed form to write"),
-    (("export", "ur5", "-o", "arm.f90"), "the file's ending says the language"),
+    (("export", "ur5", "-o", "arm.f90"), "the suffix gives the language"),
     (("solve", "ur5", *POSE, "--frame", ""), "no frame named ''"),
     (("solve", "ur5", *POSE, "--refiner", "lma"), "did you mean 'lm'"),
     (("solve", "ur5", *POSE, "--lock", "elbow"), "did you mean 'elbow_joint'"),
     (("solve", "ur5", *POSE, "--q0", "1,2"), r"shape (6,)"),
-    (("solve", "ur5", *POSE, "--q0", "elbow_joint=x"), "'x' is no number"),
+    (("solve", "ur5", *POSE, "--q0", "elbow_joint=x"), "'x' is not a number"),
     (("solve", "ur5", *POSE, "--q0", "elbow=1"), "did you mean 'elbow_joint'"),
     (("solve", "ur5", *POSE, "--q0", "elbow_joint=1,2"), "JOINT=VALUE for some joints or all entries"),
     (("solve", "ur5", *POSE, "--q0", "nan,0,0,0,0,0"), "finite numbers, got 'nan'"),

@@ -57,4 +57,4 @@ def test_what_a_robot_looks_like_is_checked_unless_that_is_refused(tmp_path: Pat
     assert "its visual geometry is checked" in done.stderr
     done = call(*words, "--no-visual")
     assert done.returncode == 2
-    assert "its visual geometry is not to be checked" in done.stderr
+    assert "leaves out its visual geometry" in done.stderr

@@ -378,5 +378,5 @@ def test_bad_input_is_told_by_name() -> None:
     both.addJoint(pin.JointModelRX())
     both.addJoint(pin.JointModelPY())
     builder.add(both, coal.Sphere(0.1))
-    with pytest.raises(UnsupportedJoint, match="several others"):
+    with pytest.raises(UnsupportedJoint, match="composite"):
         builder.world().clear_between(np.zeros(2), np.zeros(2))

@@ -87,8 +87,8 @@ def test_a_scene_in_json_is_the_same(tmp_path: Path) -> None:
         ("size = [0.1, 0.2, 0.3]", "", "a box needs size"),
         ("[1.0, 2.0, 3.0]", "['1', 2.0, 3.0]", "position is three numbers"),
         ("[1.0, 2.0, 3.0]", "[true, 2.0, 3.0]", "position is three numbers"),
-        ('["base_link"]', '"base_link"', "what may touch 'box' is a list of names"),
-        ('["base_link"]', "[1]", "what may touch 'box' is a list of names"),
+        ('["base_link"]', '"base_link"', "touching of 'box' is a list of names"),
+        ('["base_link"]', "[1]", "touching of 'box' is a list of names"),
         ('name = "box"', "name = 3", "its name is a text"),
     ],
 )

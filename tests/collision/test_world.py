@@ -32,6 +32,21 @@ def test_the_nearest_distance_agrees_with_the_check_and_with_its_points() -> Non
             assert gap == pytest.approx(at.distance, abs=1e-6)
 
 
+def test_the_nearest_to_one_obstacle_is_that_of_a_world_in_which_it_stands_alone() -> None:
+    world = world_of("ur5", "shelf")
+    Q = configurations("ur5", 10, seed=5)
+    for name in (obstacle.name for obstacle in world.obstacles):
+        alone = mik.CollisionWorld(robot_of("ur5"), [one for one in world.obstacles if one.name == name])
+        for first, second in world.pairs:
+            if name not in (first, second) and {first, second} <= set(alone.names):
+                alone.allow(first, second)
+        for q in Q:
+            at, expected = world.min_distance(q, of=name), alone.min_distance(q)
+            assert name in (at.first, at.second) and at.distance == pytest.approx(expected.distance, abs=1e-9)
+    with pytest.raises(UnknownName, match="no body named 'lamp'"):
+        world.min_distance(Q[0], of="lamp")
+
+
 def test_contacts_name_both_and_depth_is_how_far_to_move_away() -> None:
     world = mik.CollisionWorld(robot_of("ur5"))
     tip = world.robot.model.createData()

@@ -149,7 +149,7 @@ def test_ctrl_c_keeps_what_is_done(tmp_path: Path) -> None:
         compare(Suite(("ur5",), ("random",), (Interrupted(),), tasks=6), tmp_path)
     outcome = press.value.result
     assert outcome.partial and outcome.done == len(read_rows(tmp_path)) == 2
-    assert "interrupted: the same command goes on" in str(outcome)
+    assert "interrupted: the same command resumes" in str(outcome)
 
 
 def test_the_parquet_file_has_the_same_rows(whole: Path) -> None:
@@ -361,7 +361,7 @@ def test_folders_from_before_robots_travelled_are_read(whole: Path, tmp_path: Pa
     [
         ("suite.json", lambda text: text.replace('"budget"', '"bugdet"'), "unknown key 'bugdet'"),
         ("suite.json", lambda text: text.replace('"about"', '"around"'), "unknown key 'around'"),
-        ("suite.json", lambda text: text.replace('"rng"', '"absent"'), "the key 'absent' is there twice"),
+        ("suite.json", lambda text: text.replace('"rng"', '"absent"'), "the key 'absent' occurs twice"),
         ("suite.json", lambda text: json.dumps({"robots": json.loads(text)["robots"]}), "is missing"),
         ("suite.json", lambda text: text.replace('"tasks": 3', '"tasks": "3"'), "tasks: expected a whole number"),
         ("suite.json", lambda text: text[:-9], "is not JSON"),
@@ -435,7 +435,7 @@ def test_ctrl_c_in_a_terminal_ends_all_processes_without_last_words(later: float
         os.killpg(process.pid, signal.SIGINT)
         said, error = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert "interrupted: the same command goes on" in said
+    assert "interrupted: the same command resumes" in said
     assert "Traceback" not in error
     assert "arning" not in error
 

@@ -12,84 +12,131 @@ import pytest
 from pin_metaik.cache_folder import cache_folder
 from pin_metaik.compiled import baseline, sources
 
-# A pose off by nothing, seen by two loops, and how many of the two were compiled.
+# Two loops in one file with a part from another, quick to compile; what they return, and how many were compiled.
+KERNELS = {
+    "parts.py": """
+from pin_metaik.compiled import inline
+
+@inline
+def twice(x: float) -> float:
+    return 2.0 * x
+""",
+    "loops.py": """
+from pin_metaik.compiled import Floats, jit
+from pin_metaik.toy.parts import twice
+
+@jit("f8(f8[::1])")
+def total(x: Floats) -> float:
+    s = 0.0
+    for i in range(x.shape[0]):
+        s += twice(x[i])
+    return s
+
+@jit("f8(f8)")
+def fourfold(x: float) -> float:
+    return twice(twice(x))
+""",
+}
+PART, CHANGED = "2.0 * x", "3.0 * x"
 ASK = """
-import numpy as np, pin_metaik as mik
-chain = mik.Chain(mik.load_robot("ur5").model, "tool0")
-x = np.full(6, 0.3)
-problem = mik.IKProblem.of(chain, chain.placements(chain.q(x))[0])
-cost, residual = problem.costs(x[None])[0], np.abs(problem.linearize(x)[0]).max()
-loops = [loop.compiled() for loop in (chain.kernels.costs, chain.kernels.linearize)]
-print(cost, residual, sum(sum(loop.stats.cache_misses.values()) for loop in loops))
+import numpy as np
+from pin_metaik.toy import loops
+compiled = [loop.compiled() for loop in (loops.total, loops.fourfold)]
+print(loops.total(np.ones(3)), loops.fourfold(1.0), sum(sum(loop.stats.cache_misses.values()) for loop in compiled))
 """
+RIGHT, OTHER = (6.0, 4.0), (9.0, 9.0)
 SHIP = """
-import pin_metaik
-from pin_metaik.compiled import ahead, on_disk
-for name in ("costs", "linearize"):
-    ahead.Version("pin_metaik.kinematics.kernel.goals", name, False).ship(on_disk.SHIPPED)
+from pin_metaik.compiled import LOOPS
+from pin_metaik.toy import loops
+for loop in LOOPS.values():
+    loop.compiled()
+    loop.machine_code.ship()
+"""
+KEPT = """
+import pickle
+from llvmlite import binding
+from pathlib import Path
+(file,) = Path().rglob("*.fourfold-*.nbc")
+(_, kind, (machine_code, bitcode)), about, *_ = pickle.loads(file.read_bytes())
+names = [function.name for function in binding.parse_bitcode(bitcode).functions]
+print(kind, names == [about.llvm_cpython_wrapper_name] and len(bitcode) < len(machine_code))
 """
 NOWHERE = {"HOME": os.devnull, "XDG_CACHE_HOME": os.devnull, "NUMBA_CACHE_DIR": os.devnull}
-PART, CHANGED = "    pose[9] = px +", "    pose[9] = 0.1 + px +"
+
+
+def bare(folder: Path) -> Path:
+    """The folder, with a copy of the package in it that has these kernels, too, and no machine code."""
+    shutil.copytree(
+        sources.PACKAGE, folder / "pin_metaik", ignore=shutil.ignore_patterns("__pycache__", "machine_code")
+    )
+    (folder / "pin_metaik" / "toy").mkdir()
+    for name, text in KERNELS.items():
+        (folder / "pin_metaik" / "toy" / name).write_text(text)
+    return folder
 
 
 @pytest.fixture
 def copied(tmp_path: Path) -> Path:
-    """A folder with a copy of the package and of the machine code beside it, which is complete for ``ASK``."""
-    ask(sources.PACKAGE.parent)
-    return shutil.copytree(sources.PACKAGE, tmp_path / "copy" / "pin_metaik").parent
+    """The same, with the machine code of these kernels beside them."""
+    folder = bare(tmp_path / "copy")
+    assert ask(folder) == (RIGHT, 2)
+    return folder
 
 
-def ask(folder: Path, **environment: str) -> tuple[float, float, float]:
-    """What ``ASK`` prints when the package is that in ``folder``."""
+def change(folder: Path) -> None:
+    """Let the part that both loops have be another."""
+    parts = folder / "pin_metaik" / "toy" / "parts.py"
+    text = parts.read_text()
+    assert PART in text
+    parts.write_text(text.replace(PART, CHANGED))
+
+
+def ask(folder: Path, **environment: str) -> tuple[tuple[float, float], int]:
+    """What the loops return and how many were compiled, when the package is that in ``folder``."""
     given = {**os.environ, "PYTHONPATH": str(folder), **environment}
     if not environment:
         given.pop("NUMBA_CACHE_DIR", None)
     done = subprocess.run([sys.executable, "-c", ASK], env=given, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    cost, residual, compiled = done.stdout.split()
-    return float(cost), float(residual), int(compiled)
+    total, fourfold, compiled = done.stdout.split()
+    return (float(total), float(fourfold)), int(compiled)
 
 
 def test_a_change_of_a_part_is_seen_by_every_loop_that_has_it(copied: Path) -> None:
-    *exact, compiled = ask(copied)
-    assert max(exact) < 1e-12 and compiled == 0
-    kernels = copied / "pin_metaik" / "kinematics" / "kernel" / "forward.py"
-    text = kernels.read_text()
-    assert PART in text
-    kernels.write_text(text.replace(PART, CHANGED))
-    cost, residual, compiled = ask(copied)
-    assert cost == pytest.approx(0.1) and residual == pytest.approx(0.1) and compiled == 2
+    assert ask(copied) == (RIGHT, 0)
+    change(copied)
+    assert ask(copied) == (OTHER, 2)
 
 
 def test_machine_code_that_lies_beside_the_package_is_used_where_nothing_can_be_written(copied: Path) -> None:
-    folders = list(copied.rglob("__pycache__"))
-    for folder in folders:
+    for folder in copied.rglob("__pycache__"):
         folder.chmod(0o555)
-    assert ask(copied, HOME=os.devnull, XDG_CACHE_HOME=os.devnull)[2] == 0
+    assert ask(copied, HOME=os.devnull, XDG_CACHE_HOME=os.devnull) == (RIGHT, 0)
 
 
-def test_without_any_folder_to_keep_it_in_everything_is_compiled(copied: Path) -> None:
-    shutil.rmtree(copied / "pin_metaik" / "kinematics" / "kernel" / "__pycache__")
-    (copied / "pin_metaik" / "kinematics" / "kernel" / "__pycache__").touch()  # a file where the folder would be
-    *exact, compiled = ask(copied, **NOWHERE)
-    assert max(exact) < 1e-12 and compiled == 2
+def test_without_any_folder_to_keep_it_in_everything_is_compiled(tmp_path: Path) -> None:
+    bare(tmp_path)
+    (tmp_path / "pin_metaik" / "toy" / "__pycache__").touch()  # a file where the folder would be
+    assert ask(tmp_path, **NOWHERE) == (RIGHT, 2)
 
 
 def test_machine_code_that_a_wheel_carries_is_used_until_a_source_changes(tmp_path: Path) -> None:
-    bare = shutil.ignore_patterns("__pycache__")
-    shutil.copytree(sources.PACKAGE, tmp_path / "built" / "pin_metaik", ignore=bare)
+    built = bare(tmp_path / "built")
     processor = baseline.baseline()
     assert processor is not None, "this machine is older than the baseline"
-    there = {"PYTHONPATH": str(tmp_path / "built"), "NUMBA_CACHE_DIR": str(tmp_path / "parts")}
+    there = {"PYTHONPATH": str(built), "NUMBA_CACHE_DIR": str(tmp_path / "code")}
     cpu = {"NUMBA_CPU_NAME": processor.name, "NUMBA_CPU_FEATURES": ""}
-    subprocess.run([sys.executable, "-c", SHIP], env={**os.environ, **there, **cpu}, cwd=tmp_path / "built", check=True)
-    shutil.copytree(tmp_path / "built" / "pin_metaik", tmp_path / "site" / "pin_metaik", ignore=bare)
-    *exact, compiled = ask(tmp_path / "site", **NOWHERE)
-    assert max(exact) < 1e-12 and compiled == 0
-    with (tmp_path / "site" / "pin_metaik" / "kinematics" / "kernel" / "forward.py").open("a") as kernels:
-        kernels.write("# changed\n")
-    *exact, compiled = ask(tmp_path / "site", **NOWHERE)
-    assert max(exact) < 1e-12 and compiled == 2
+    subprocess.run([sys.executable, "-c", SHIP], env={**os.environ, **there, **cpu}, cwd=built, check=True)
+    site = tmp_path / "site"
+    shutil.copytree(built / "pin_metaik", site / "pin_metaik", ignore=shutil.ignore_patterns("__pycache__"))
+    assert ask(site, **NOWHERE) == (RIGHT, 0)
+    change(site)
+    assert ask(site, **NOWHERE) == (OTHER, 2)
+
+
+def test_of_a_loop_there_is_kept_its_machine_code_and_nothing_for_others_to_link(copied: Path) -> None:
+    done = subprocess.run([sys.executable, "-c", KEPT], cwd=copied, capture_output=True, text=True)
+    assert done.stdout.split() == ["object", "True"], done.stderr
 
 
 def test_code_for_the_baseline_needs_every_one_of_its_instructions() -> None:
@@ -101,21 +148,21 @@ def test_code_for_the_baseline_needs_every_one_of_its_instructions() -> None:
 
 
 def test_two_processes_that_start_at_once_compile_each_loop_once(tmp_path: Path) -> None:
-    shutil.copytree(sources.PACKAGE, tmp_path / "pin_metaik", ignore=shutil.ignore_patterns("__pycache__"))
+    bare(tmp_path)
     with ThreadPoolExecutor(2) as threads:
         answers = list(threads.map(lambda _: ask(tmp_path), range(2)))
-    assert sum(compiled for *_, compiled in answers) == 2
+    assert [answer for answer, _ in answers] == [RIGHT, RIGHT]
+    assert sum(compiled for _, compiled in answers) == 2
     assert not list(tmp_path.rglob("*.lock"))
 
 
 def test_machine_code_that_was_cut_off_is_compiled_again(copied: Path) -> None:
     for file in copied.rglob("*.nbc"):
         file.write_bytes(file.read_bytes()[:100])
-    for file in copied.rglob("*linearize*.nbi"):
+    for file in copied.rglob("*fourfold*.nbi"):
         file.write_bytes(b"")
-    *exact, compiled = ask(copied)
-    assert max(exact) < 1e-12 and compiled == 2
-    assert ask(copied)[2] == 0
+    assert ask(copied) == (RIGHT, 2)
+    assert ask(copied) == (RIGHT, 0)
 
 
 def test_the_digest_covers_what_loops_are_made_of() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlsplit
@@ -17,6 +18,7 @@ from PIL import Image
 
 import pin_metaik as mik
 from benchmarks import readme
+from docs.pictures import along_the_shelf
 from docs.site.layers import drawings
 from pin_metaik.cli import app
 from pin_metaik.cli.examples import EXAMPLES
@@ -85,9 +87,21 @@ def test_the_picture_of_the_readme_shows_what_is_solved_now() -> None:
     names = [contact[:2] for contact in world.pairs_in_collision(solved[0])]
     assert names == [("panda_link5", "high_board")]  # "its forearm collides"
     assert not world.in_collision(solved[1])
-    with Image.open(ROOT / "docs" / "images" / "shelf.png") as picture:  # python docs/pictures.py shelf draws it
+    with Image.open(ROOT / "docs" / "images" / "shelf.png") as picture:  # docs/pictures.py draws it
         shown = json.loads(picture.info["configurations"])
     np.testing.assert_allclose(shown, solved, atol=1e-4)  # rad, what no eye sees
+
+
+def test_the_animation_of_the_readme_shows_the_paths_that_are_found_now() -> None:
+    robot = mik.load_robot("panda")
+    chain, world = mik.Chain(robot, robot.frame), mik.CollisionWorld(robot, load_scene("shelf"))
+    alone = mik.solve_ik_path(chain, along_the_shelf())
+    clear = mik.solve_ik_path(chain, along_the_shelf(), world=world)
+    assert alone.success.all() and any(world.in_collision(q) for q in alone.q)
+    assert clear.continuous and all(world.clear_between(*step) for step in pairwise(clear.q))
+    with Image.open(ROOT / "docs" / "images" / "shelf_path.gif") as animation:  # docs/pictures.py draws it
+        shown = json.loads(animation.info["comment"])
+    np.testing.assert_allclose(shown, [alone.q[::2], clear.q[::2]], atol=1e-4)  # rad, what no eye sees
 
 
 def test_the_coverage_page_has_every_robot_that_loads_by_name() -> None:

@@ -1,10 +1,11 @@
-"""A toolbox and a Chromium for the tests of a module: one of each, and one tab in it, as opening one takes long."""
+"""One toolbox, one Chromium and a tab in it for all tests that look, as opening them takes long."""
 
 from __future__ import annotations
 
 import importlib
 import os
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
@@ -14,9 +15,10 @@ import pytest
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 SMALL = (1000, 640)  # pixels
+LEFT = 60.0  # s, after which a tab that was closed is there for good
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def toolbox() -> Iterator[Any]:
     """A toolbox on loopback, at any port."""
     for package in ("viser", "trimesh", "shapely"):
@@ -49,10 +51,27 @@ def chromium(browser: list[str]) -> Iterator[Any]:
 
 @pytest.fixture
 def socket(toolbox: Any) -> Iterator[Any]:
-    """A tab without a browser, which only speaks with the toolbox."""
+    """A tab without a browser, which only speaks with the toolbox; nothing of it is left when it is closed."""
+    before = len(toolbox.tabs)
     opened = benchmark("toolbox_socket").SocketTab(toolbox.url)
     yield opened
     opened.close()
+    end = time.monotonic() + LEFT
+    while len(toolbox.tabs) > before:
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+@pytest.fixture(scope="session")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a small comparison."""
+    for package in ("joblib", "pyarrow"):
+        pytest.importorskip(package)
+    from pin_metaik.compare import Suite, compare
+
+    folder = tmp_path_factory.mktemp("compared") / "results"
+    compare(Suite(("ur5",), ("random",), ("dls", "gwo"), tasks=3, budget=300), folder)
+    return folder
 
 
 @pytest.fixture(scope="module")

@@ -8,22 +8,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import pytest
-
-from pin_metaik.compare import Suite, compare, read_results, summarise
+from pin_metaik.compare import read_results, summarise
 from pin_metaik.compare.folder.manifest import MANIFEST
 
-pytest.importorskip("joblib")
-pytest.importorskip("pyarrow")
-
 BUTTON = "Open a results folder: .zip"
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("compared") / "results"
-    compare(Suite(("ur5",), ("random",), ("dls", "gwo"), tasks=3, budget=300), folder)
-    return folder
 
 
 def packed(folder: Path) -> bytes:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from urllib.request import urlopen
 
 import pytest
 
 from pin_metaik.gui.gate import COOKIE, MOST_TABS, Gate, Refused, Request, on_loopback
 
 TOKEN = "rather-secret"
+PAGE = b"<html></html>"
 
 
 def asked(target: str = "/", **headers: str) -> Request:
@@ -18,7 +20,7 @@ def asked(target: str = "/", **headers: str) -> Request:
 
 @pytest.fixture(scope="module")
 def gates() -> Iterator[tuple[Gate, Gate]]:
-    opened = Gate("127.0.0.1", 0, 9, None), Gate("127.0.0.1", 0, 9, TOKEN)
+    opened = Gate("127.0.0.1", 0, 9, None, PAGE), Gate("127.0.0.1", 0, 9, TOKEN, PAGE)
     yield opened
     for gate in opened:
         gate.close()
@@ -64,10 +66,15 @@ def test_there_is_room_for_so_many_tabs(gates: tuple[Gate, Gate]) -> None:
     gate.tabs = 0
 
 
-def test_any_address_with_a_state_in_it_is_the_one_page() -> None:
-    assert asked("/state/abc", Host="x").to_page().startswith(b"GET / HTTP/1.1\r\n")
-    assert b"connection: close" in asked("/", Host="x", Connection="keep-alive").to_page()
-    assert asked("/state/abc", Host="x", Upgrade="websocket").to_page().startswith(b"GET /state/abc ")
+def test_any_address_with_a_state_in_it_is_the_one_page(gates: tuple[Gate, Gate]) -> None:
+    gate, _ = gates
+    for path in ("", "?fixedDpr=0.2", "state/abc", "state/abc?fixedDpr=0.2"):
+        with urlopen(f"http://127.0.0.1:{gate.port}/{path}", timeout=20) as given:
+            assert given.read() == PAGE and given.headers["Content-Type"].startswith("text/html")
+    assert not asked("/state/abc", Host="x", Upgrade="websocket").wants_page
+    assert not asked("/assets/a.js", Host="x").wants_page
+    assert b"connection: close" in asked("/assets/a.js", Host="x", Connection="keep-alive").head()
+    assert asked("/state/abc", Host="x", Upgrade="websocket").head().startswith(b"GET /state/abc ")
 
 
 def test_loopback_is_known_by_its_addresses() -> None:

@@ -167,6 +167,22 @@ def test_other_sites_and_paths_out_of_the_page_are_refused(toolbox: Any) -> None
         refused.value.close()
 
 
+def test_a_run_goes_step_by_step_and_on(socket: Any, toolbox: Any) -> None:
+    socket.set("Page", "Metaheuristics at work")
+    socket.find("Run both side by side")
+    (session,) = toolbox.tabs.values()
+
+    def evaluations() -> list[float]:
+        return list(session.page._records[-1].evaluations) if session.page._records else []
+
+    for steps in (1, 2, 3):
+        socket.set("Going", "Step")  # the first begins a run that is held
+        socket.wait_until(lambda steps=steps: len(evaluations()) >= steps)
+        assert len(evaluations()) == steps
+    socket.set("Going", "Go on")
+    socket.see("by the exact test")
+
+
 def test_a_tab_that_is_closed_ends_its_run_and_a_run_that_is_stopped_gives_its_best(toolbox: Any) -> None:
     sockets = benchmark("toolbox_socket")
     for stopped in (True, False):

@@ -8,7 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from pin_metaik.errors import InvalidSetting
+from pin_metaik.errors import InvalidModel, InvalidSetting
+from pin_metaik.gui.pages.arms.arm import Arm
+from pin_metaik.gui.pages.arms.state import ArmsState
 from pin_metaik.gui.uploads import MOST, MOST_FILES, MOST_UNPACKED, only_inside, plain_name, received
 
 KINDS = (".urdf", ".toml")
@@ -71,3 +73,23 @@ def test_what_was_sent_names_no_file_outside_of_itself(file: str) -> None:
     with pytest.raises(InvalidSetting, match="outside of what was uploaded"):
         only_inside([file], "robot")
     only_inside(["meshes/a.stl", "package://franka/a.stl"], "robot")
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_xacro_is_not_expanded_as_its_expressions_are_python(encoding: str, tmp_path: Path) -> None:
+    mark = tmp_path / "run"
+    files = "[c for c in ().__class__.__base__.__subclasses__()[:] if c.__name__ == '_IOBase'][0].__subclasses__()"
+    code = f"${{(lambda: [c for c in {files} if c.__name__ == '_RawIOBase'][0].__subclasses__()[0]('{mark}', 'w'))()}}"
+    text = f'<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="revolute"><origin xyz="{code} 0 0"/>'
+    text += '<parent link="a"/><child link="b"/></joint></robot>'
+    declared = "" if encoding == "utf-8" else '<?xml version="1.0" encoding="utf-16"?>'
+    with pytest.raises(InvalidModel, match="whose expressions are Python: expand it first"):
+        Arm.of(ArmsState(urdf=declared + text), tmp_path)
+    assert not mark.exists()
+
+
+def test_mjcf_names_no_mesh_outside_of_what_was_sent(tmp_path: Path) -> None:
+    text = '<mujoco><asset><mesh name="m" file="/etc/m.stl"/></asset><worldbody><body name="b"><joint type="hinge"/>'
+    text += '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody></mujoco>'
+    with pytest.raises(InvalidSetting, match=r"names the file '/etc/m\.stl'"):
+        Arm.of(ArmsState(urdf=text), tmp_path)

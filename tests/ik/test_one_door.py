@@ -116,7 +116,7 @@ def test_a_criterion_that_gives_no_number_is_named(answer) -> None:
 
 
 def test_a_choice_or_all_solutions_without_a_refiner_are_refused() -> None:
-    with pytest.raises(InvalidSetting, match="takes a refiner"):
+    with pytest.raises(InvalidSetting, match="needs a refiner"):
         mik.IKSolver("gwo", None, select="nearest")
     with pytest.raises(InvalidSetting, match="found by a refiner"):
         mik.solve_ik_all(chain_of("ur5"), poses_of("ur5", 1)[0], solver=mik.IKSolver("gwo", None))

@@ -6,6 +6,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import pin_metaik as mik
+from pin_metaik.compare.cases.boundary import farthest
 from pin_metaik.errors import (
     FrameNotFound,
     InvalidBudget,
@@ -89,6 +90,20 @@ def test_no_solver_overspends(seeder: str | None, evaluations: int) -> None:
     result = mik.solve_ik(chain, far, solver=mik.IKSolver(seeder, "dls", mik.Budget(evaluations=evaluations)))
     assert result.evaluations <= evaluations
     assert chain.limits.contains(result.x)
+
+
+@pytest.mark.parametrize("evaluations", [500, 5000, 10_000])
+def test_all_solutions_and_the_best_of_them_keep_to_the_budget_at_the_edge_of_the_workspace(evaluations: int) -> None:
+    robot = mik.load_robot("rv7fl")  # arms stretched out: nearly double roots, many evaluations to tell them apart
+    chain, rng = mik.Chain(robot, robot.frame), np.random.default_rng(3)
+    budget = mik.Budget(evaluations=evaluations)
+    for _ in range(8):
+        direction, x = rng.normal(size=3), chain.box.sample(rng, 1)[0]
+        pose = chain.placements(chain.q(farthest(chain, x, direction / np.linalg.norm(direction))))[0]
+        best = mik.solve_ik(chain, pose, solver=mik.IKSolver(select="nearest", budget=budget))
+        every = mik.solve_ik_all(chain, pose, budget=budget)
+        assert best.success and best.evaluations <= evaluations
+        assert len(every) and every.evaluations <= evaluations
 
 
 def test_the_same_seed_gives_the_same_answer_and_another_seed_may_not() -> None:

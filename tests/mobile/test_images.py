@@ -140,7 +140,7 @@ def test_a_palette_may_hold_transparent_colours(tmp_path):
 WRONG = {  # file: what is said
     "empty.png": (b"", "is not an image: a map is a PGM, a PNG"),
     "text.png": (b"hello", "is not an image"),
-    "cut.png": (SAME["rgb.png"][:-30], "no image that can be read, or ends early"),
+    "cut.png": (SAME["rgb.png"][:-30], "cannot be read as an image, or ends early"),
     "magic.pgm": (b"P5", "after P2 or P5 come its columns, rows and largest value"),
     "words.pgm": (b"P5 five 3 255 ", "after P2 or P5 come"),
     "negative.pgm": (b"P5 -5 3 255 ", "after P2 or P5 come"),

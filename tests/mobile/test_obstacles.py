@@ -230,7 +230,7 @@ class Raising:
     [
         (LOOP, "nested too deeply"),
         (Raising(), "cannot be read: the file is closed"),
-        (Foreign("POINT (1 1)"), "no GeoJSON mapping: 'POINT"),
+        (Foreign("POINT (1 1)"), "not a GeoJSON mapping: 'POINT"),
         (Foreign(None), "give vertices"),
         ("LINESTRING (1 1, 1 1)", "line without length: give a Point"),
         ("CIRCULARSTRING (0 0, 1 1, 2 0)", "neither WKT nor"),

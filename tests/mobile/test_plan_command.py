@@ -30,7 +30,7 @@ def test_the_shortest_path_of_a_shipped_scene_is_planned():
 def test_a_path_that_collides_is_said_to_and_ends_with_1():
     done = call("u_trap", "--method", "pso", "--fitness", "paper", "--evaluations", 500, "--via", 1)
     assert done.exit_code == 1
-    assert "goes through an obstacle: not a path" in done.stdout
+    assert "it goes through an obstacle" in done.stdout
 
 
 def test_everything_is_written_to_the_folder(tmp_path):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import shapely
 
-from pin_metaik.errors import InvalidSetting, UnknownName
-from pin_metaik.mobile import NoPath, PathProblem, PathStatus, Scene, load_scene, plan_path, random_scene
+from pin_metaik.errors import InvalidGeometry, InvalidSetting, UnknownName
+from pin_metaik.mobile import NoPath, PathProblem, PathStatus, Scene, load_scene, path_through, plan_path, random_scene
 from pin_metaik.optimize import ALGORITHMS, Budget
 from pin_metaik.optimize.ga import GA
 from pin_metaik.optimize.pso import PSO
@@ -62,6 +62,19 @@ def test_a_seeded_search_is_at_least_as_good_as_the_shortest_path(method):
     plan = plan_path(load_scene("ten_obstacles"), method, budget=Budget(evaluations=2000), seeded=True)
     assert plan.success
     assert plan.gap < 1e-6
+
+
+def test_a_path_of_ones_own_is_judged_by_the_exact_test_and_against_the_shortest():
+    problem = PathProblem.of(load_scene("ten_obstacles"))
+    best = path_through(problem, problem.optimum.corners)
+    assert best.status is PathStatus.FREE and best.gap == pytest.approx(0.0, abs=1e-12) and best.verify()
+    longer = path_through(problem, [(0.1, 9.9), *problem.optimum.corners])
+    assert longer.length == pytest.approx(shapely.LineString(longer.path.points).length)
+    straight = path_through(load_scene("one_square"), np.empty((0, 2)))
+    assert straight.status is PathStatus.COLLIDES and straight.gap is None
+    for bad in ([(1.0,)], [(1.0, np.nan)]):
+        with pytest.raises(InvalidGeometry, match="via"):
+            path_through(problem, bad)
 
 
 def test_a_seed_with_more_corners_than_via_points_is_refused():

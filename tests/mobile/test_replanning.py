@@ -95,7 +95,7 @@ def test_an_obstacle_that_comes_up_on_the_way_is_driven_round_or_named():
 def test_states_that_the_robot_is_never_in_are_refused(wrong):
     with pytest.raises(InvalidSetting, match="start"):
         plan_in_motion(A, start=wrong)
-    with pytest.raises(InvalidSetting, match="does not turn at the end"):
+    with pytest.raises(InvalidSetting, match="the turning rate at the end is 0"):
         plan_in_motion(A, start=State(0, 0, 0), goal=State(3, 3, 0, 0, 0.1))
     with pytest.raises(InvalidSetting):
         State(0, 0, np.nan)

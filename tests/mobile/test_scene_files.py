@@ -183,7 +183,9 @@ def test_plan_reads_grids_as_it_is_told(tmp_path):
     assert plan("speck.npy") == pytest.approx(2 * np.hypot(1.5, 0.25) + 0.5)
     assert plan("speck.npy", "--specks", "2") == pytest.approx(3.5)
     assert "unknown must be one of" in plan("wall.npy", "--unknown", "maybe")
-    assert "a random scene is none" in str(CliRunner().invoke(cli.app, ["plan", "random:1", "--specks", "2"]).exception)
+    assert "which a random scene is not" in str(
+        CliRunner().invoke(cli.app, ["plan", "random:1", "--specks", "2"]).exception
+    )
 
 
 def test_plan_takes_round_joins_where_mitred_ones_close_the_way(tmp_path):

@@ -35,7 +35,7 @@ def test_the_path_round_a_square() -> None:
 def test_the_visibility_graph(ten: mobile.PathProblem) -> None:
     graph = ten.visibility.between(ten.scene.start, ten.scene.goal)
     nodes = len(graph.points)
-    said(f"of the {nodes} nodes' {nodes * (nodes - 1) // 2} pairs {graph.edges.sum() // 2} are left")
+    said(f"of the {nodes * (nodes - 1) // 2} pairs of {nodes} nodes {graph.edges.sum() // 2} are left")
     first, *others = [plan.length for plan in mobile.plan_alternatives(ten, 4)]
     gaps = [f"{100 * (length / first - 1):.2f}" for length in others]
     said(f"are {gaps[0]}, {gaps[1]} and {gaps[2]} % longer")
@@ -82,7 +82,7 @@ def test_the_swarm_and_the_pocket(ten: mobile.PathProblem) -> None:
 def test_motions_wheels_and_parking() -> None:
     motion = mobile.plan_trajectory([(0, 0), (3, 0), (3, 3)])
     said(f"{motion.time:.3f} s instead of {motion.stop_and_turn:.3f} s")
-    said(f"{mobile.TURTLEBOT3_BURGER.wheels(0.22, 2.84).max() / 0.033:.2f} rad/s: the sheet's")
+    said(f"{mobile.TURTLEBOT3_BURGER.wheels(0.22, 2.84).max() / 0.033:.2f} rad/s: the numbers of the data sheet")
     there, back = (mobile.shortest_curve((0, 0, 0), (0, 2, 0), 5.0, reverse=way).length for way in (True, False))
     said(f"{there:.3f} m with reversing and {back:.3f} m without")
 
@@ -95,7 +95,7 @@ def test_the_door(tmp_path: Path) -> None:
     plan = mobile.plan_among_moving(problem, mobile.load_moving(tmp_path / "moving.json"), 1.0)
     ((x, y, held),) = plan.waits
     said(f"It waits {held:.2f} s at ({x:.1f}, {y:.1f})", f"arrives after {plan.duration:.3f} s")
-    said(f"sets out at {plan.times[2]:.3f} s")
+    said(f"drives on at {plan.times[2]:.3f} s")
 
 
 def test_every_picture_of_the_page_is_there() -> None:

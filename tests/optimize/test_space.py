@@ -18,7 +18,7 @@ from pin_metaik.optimize import Box
         ([[0.0]], [[1.0]], r"shape \(1, 1\)"),
         (0.0, 1.0, r"shape \(\)"),
         (["a"], ["b"], "must be numbers"),
-        ([-1.7e308], [1.7e308], "index 0 are further apart"),
+        ([-1.7e308], [1.7e308], "index 0 are so far apart"),
     ],
 )
 def test_bounds_that_make_no_box_are_named(lower, upper, named):

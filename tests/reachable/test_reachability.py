@@ -127,7 +127,7 @@ def test_work_that_was_stopped_goes_on_and_comes_to_the_same(ur5_map: Reachabili
     assert_array_equal(Reachability.load(tmp_path / "reachability.npz").status, whole.status)
     assert_array_equal(whole.status, reachability(chain, several, 8).status)
     for question in ({"orientations": 9}, {"orientations": 8, "rng": 4}):
-        with pytest.raises(InvalidSetting, match="another question"):
+        with pytest.raises(InvalidSetting, match="made with other arguments"):
             reachability(chain, several, folder=tmp_path, **question)
 
 

@@ -141,7 +141,7 @@ SAID: dict[str, tuple[str, str, str]] = {
         PLAIN,
         "joint 'k' has min='-2' in its <limit>, which is not read; did you mean lower?",
     ),
-    "a loop": (arm(root='<loop_joint name="l"/>'), PLAIN, "<loop_joint> 'l': loops are not held"),
+    "a loop": (arm(root='<loop_joint name="l"/>'), PLAIN, "<loop_joint> 'l': a URDF has no loops, this one stays open"),
     "limits in degrees": (
         arm(joint=LIMIT.replace('"-2"', '"-170"')),
         PLAIN,

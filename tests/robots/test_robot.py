@@ -50,7 +50,7 @@ def write(tmp_path):
     return write
 
 
-@pytest.mark.filterwarnings("ignore:.*mimics|.*leave that no room")
+@pytest.mark.filterwarnings("ignore:.*mimics|.*these limits are ignored")
 @pytest.mark.parametrize("name", NAMES)
 def test_every_listed_robot_loads_with_a_tip_that_its_joints_move(name, capfd):
     robot = load_robot(name)
@@ -105,7 +105,7 @@ def test_bases_are_fixed_unless_asked_otherwise():
     assert load_robot("talos_arm").model.nv == 7
 
 
-@pytest.mark.filterwarnings("ignore:.*leave that no room")
+@pytest.mark.filterwarnings("ignore:.*these limits are ignored")
 @pytest.mark.parametrize("name", MIMICKING)
 def test_a_mimic_joint_moves_as_its_urdf_says(name):
     held, free = load_robot(name), load_robot(name, mimic=False)

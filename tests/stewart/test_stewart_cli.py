@@ -102,7 +102,7 @@ def test_fewer_than_six_legs_are_said_to_leave_freedoms(tmp_path):
         assert result.exit_code == 1
         assert "UNDERCONSTRAINED" in result.output
         assert (
-            f"{legs} legs between universal and spherical joints leave the platform {6 - legs} freedom" in result.output
+            f"{legs} legs between universal and spherical joints leave the platform {6 - legs} degree" in result.output
         )
     assert "leave the platform" in run("show", path).output
 

@@ -105,7 +105,7 @@ def test_joints_at_their_limits_stay_inside_between_the_poses(panda: mik.Chain) 
     timed = timing.time_path(panda, q)
     assert timed.curve.bent
     held(timed)
-    with pytest.raises(mik.MetaIKError, match="leave its limits on a smooth way"):
+    with pytest.raises(mik.MetaIKError, match="leave its limits on a smooth curve"):
         timing.time_path(panda, q, jerk=100.0)
 
 

@@ -1,4 +1,4 @@
-"""``pin-metaik mobile``: look at scenes, compare planners, drive in motion, cars' curves, obstacles that move."""
+"""``pin-metaik mobile``: show scenes, compare planners, plan in motion, curves for cars, moving obstacles."""
 
 from __future__ import annotations
 

@@ -35,20 +35,23 @@ SceneName = Annotated[
     typer.Argument(
         help="A scene (.json), polygons (.geojson, .wkt), an occupancy grid (.npy), a ROS map (.yaml), the name "
         "of a scene that comes with the package, or random:SEED, random:SEED:OBSTACLES or "
-        "random:SEED:OBSTACLES:CONCAVE, with the share of concave ones.",
+        "random:SEED:OBSTACLES:CONCAVE, where CONCAVE is the share of concave ones.",
     ),
 ]
-Start = Annotated[Place, typer.Option(metavar="X Y", help="Instead of the scene's.")]
-Goal = Annotated[Place, typer.Option(metavar="X Y", help="Instead of the scene's.")]
+Start = Annotated[Place, typer.Option(metavar="X Y", help="Replaces that of the scene.")]
+Goal = Annotated[Place, typer.Option(metavar="X Y", help="Replaces that of the scene.")]
 Join = Annotated[
-    str | None, typer.Option(help="Corners of grown obstacles: mitre or round; default: mitre, round if it must.")
+    str | None,
+    typer.Option(help="Corners of grown obstacles: mitre or round; default: mitre, or round if mitre leaves no path."),
 ]
-Unknown = Annotated[str | None, typer.Option(help="Of a grid: unknown cells are blocked (the default) or free.")]
+Unknown = Annotated[str | None, typer.Option(help="For a grid: unknown cells are blocked (the default) or free.")]
 Threshold = Annotated[
-    float | None, typer.Option(help="Of a grid: cells above it are occupied; default: 0, of a ROS map 99.")
+    float | None, typer.Option(help="For a grid: cells above it are occupied; default: 0, for a ROS map 99.")
 ]
-Specks = Annotated[int | None, typer.Option(min=1, help="Of a grid: groups of fewer occupied cells are left out.")]
-Resolution = Annotated[float | None, typer.Option(help="Of a .npy: width of a cell, m; default: 1.")]
+Specks = Annotated[
+    int | None, typer.Option(min=1, help="For a grid: groups of fewer occupied cells than this are left out.")
+]
+Resolution = Annotated[float | None, typer.Option(help="For a .npy: width of a cell, m; default: 1.")]
 Settings = Annotated[
     list[str] | None,
     typer.Option(
@@ -61,8 +64,7 @@ Settings = Annotated[
 VehicleName = Annotated[
     str,
     typer.Option(
-        help="Whose limits are kept: nomad200, nomad200_driver, turtlebot3_burger, turtlebot3_waffle, or a .json with "
-        "others."
+        help="The vehicle: nomad200, nomad200_driver, turtlebot3_burger, turtlebot3_waffle, or a .json with others."
     ),
 ]
 FitnessName = Annotated[str, typer.Option(help="What a metaheuristic minimises: exact or paper (its Eq. 5).")]
@@ -100,7 +102,9 @@ def read_scene(source: str, start: Place, goal: Place, clearance: float = 0.0, c
     if not source.startswith(RANDOM):
         return mobile.load_scene(source, start, goal, **given)
     if given:
-        raise InvalidSetting(f"{', '.join(f'--{key}' for key in given)}: of an occupancy grid; a random scene is none")
+        raise InvalidSetting(
+            f"{', '.join(f'--{key}' for key in given)}: only for an occupancy grid, which a random scene is not"
+        )
     seed, count, concave = (*source.removeprefix(RANDOM).split(":"), "", "")[:3]
     try:
         obstacles, share = int(count or 15), float(concave or 0.0)

@@ -41,10 +41,12 @@ USUAL = ("exact", "astar", "rrt", "rrtstar", "prm", "ga", "pso")
 
 
 def compare(
-    scenes: Annotated[list[str], typer.Argument(metavar="SCENE", help="As `plan` takes them, one or several.")],
+    scenes: Annotated[list[str], typer.Argument(metavar="SCENE", help="One or several scenes, as for `plan`.")],
     methods: Annotated[
         list[str] | None,
-        typer.Option(help=f"As `plan --method` takes them, with commas, or repeated; default: {', '.join(USUAL)}."),
+        typer.Option(
+            help=f"Planners, as for `plan --method`, separated by commas or repeated; default: {', '.join(USUAL)}."
+        ),
     ] = None,
     settings: Annotated[
         list[str] | None,
@@ -55,16 +57,16 @@ def compare(
         ),
     ] = None,
     runs: Annotated[
-        int, typer.Option(min=1, help="Of every planner on every scene, each with a seed of its own.")
+        int, typer.Option(min=1, help="Number of runs of every planner on every scene, each with its own seed.")
     ] = 10,
     start: Start = None,
     goal: Goal = None,
-    radius: Annotated[float, typer.Option(help="Of the robot.")] = 0.0,
-    margin: Annotated[float, typer.Option(help="To keep on top of that.")] = 0.0,
+    radius: Annotated[float, typer.Option(help="Radius of the robot.")] = 0.0,
+    margin: Annotated[float, typer.Option(help="Distance to keep in addition to the radius.")] = 0.0,
     fitness: FitnessName = "exact",
     via: Annotated[int, typer.Option(min=1, help="Via points of metaheuristics.")] = 5,
     evaluations: Annotated[
-        int, typer.Option(min=1, help="Of each run: paths of metaheuristics, straight lines of others.")
+        int, typer.Option(min=1, help="Budget of each run: paths of metaheuristics, straight lines of other planners.")
     ] = 5000,
     rng: Rng = 0,
     out: Annotated[
@@ -73,9 +75,9 @@ def compare(
     figures: Annotated[bool, typer.Option(help="Draw figures into --out; needs the extra plots.")] = True,
     as_json: Json = False,
 ) -> None:
-    """Compare path planners on the same scenes with the gap to the shortest path. Ctrl-C keeps what is done.
+    """Compare path planners on the same scenes by their gap to the shortest path. Ctrl-C keeps what is done.
 
-    Run 0 of a planner is what `plan` gives with the same --rng, run 1 with one more, and so on.
+    Run 0 of a planner is what `plan` gives with the same --rng, run 1 with --rng + 1, and so on.
     """
     from pin_metaik import mobile
 

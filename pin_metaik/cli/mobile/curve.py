@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def curve(
-    turning_radius: Annotated[float, typer.Option(help="Least radius that the vehicle can turn with, m.")],
+    turning_radius: Annotated[float, typer.Option(help="Least turning radius of the vehicle, m.")],
     scene: Annotated[str | None, typer.Argument(help="Obstacles; default: the open plane.")] = None,
     start: Annotated[
         Pose | None,
@@ -30,23 +30,25 @@ def curve(
         Pose | None,
         typer.Option("--to", metavar="X Y HEADING", help="m and degrees; default: the scene's, any heading."),
     ] = None,
-    reverse: Annotated[bool, typer.Option("--reverse", help="It may drive backwards, too.")] = False,
+    reverse: Annotated[bool, typer.Option("--reverse", help="The vehicle may also drive backwards.")] = False,
     footprint: Annotated[
         tuple[float, float] | None,
-        typer.Option(metavar="LENGTH WIDTH", help="Of a rectangular vehicle, m; default: a point."),
+        typer.Option(metavar="LENGTH WIDTH", help="Length and width of a rectangular vehicle, m; default: a point."),
     ] = None,
     behind: Annotated[
-        float | None, typer.Option(help="How much of its length is behind the point that curves are of; default: half.")
+        float | None, typer.Option(help="How much of its length is behind its reference point, m; default: half.")
     ] = None,
-    margin: Annotated[float, typer.Option(help="That the path for the curve keeps on top of half the width, m.")] = 0.1,
+    margin: Annotated[
+        float, typer.Option(help="Distance that the path for the curve keeps in addition to half the width, m.")
+    ] = 0.1,
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write its poses: .csv.")] = None,
     picture: Annotated[Path | None, typer.Option(help="Draw it: .png, .svg or .pdf.")] = None,
-    ros: Annotated[Path | None, typer.Option(help="A .yaml or .json for a nav_msgs/Path.")] = None,
+    ros: Annotated[Path | None, typer.Option(help="Write a nav_msgs/Path (.yaml or .json).")] = None,
     as_json: Json = False,
 ) -> None:
-    """A curve for a car: in the open the shortest (Dubins; Reeds and Shepp), among obstacles a short one that is free.
+    """A curve for a car: the shortest (Dubins; Reeds and Shepp) or, among obstacles, a short one that is free.
 
-    Exit code 0: found; 2: makes no sense, or every curve that was tried meets an obstacle.
+    Exit code 0: found; 2: invalid arguments, or every curve tried meets an obstacle.
     """
     from pin_metaik import mobile
     from pin_metaik.mobile import plots
@@ -64,7 +66,7 @@ def curve(
     obstacles: Any = ()
     if scene is None:
         if start is None or goal is None:
-            raise InvalidSetting("in the open both ends are needed: give --from and --to X Y HEADING, or a SCENE")
+            raise InvalidSetting("without a SCENE both ends are needed: give --from and --to X Y HEADING")
         found = mobile.shortest_curve(_pose(start), _pose(goal), turning_radius, reverse=reverse)
     else:
         world = read_scene(scene, start and start[:2], goal and goal[:2], margin)
@@ -115,7 +117,7 @@ def _show(found: Curve) -> None:
     console = Console(highlight=False)
     cusps = len(found.cusps)
     turns = "never" if not cusps else "once" if cusps == 1 else f"{cusps} times"
-    console.print(f"{found.word or 'no way at all'}: {found.length:.6g} m, changes direction {turns}", style="green")
+    console.print(f"{found.word or 'no motion'}: {found.length:.6g} m, reverses {turns}", style="green")
     names = {"L": "left", "R": "right", "S": "straight"}
     for letter, length in zip(found.word, found.lengths, strict=True):
         turned = "" if letter == "S" else f", through {degrees(abs(length) / found.radius):.5g} degrees"

@@ -38,12 +38,13 @@ def drive(
         typer.Option(
             "--from",
             metavar="X Y HEADING V OMEGA",
-            help="The state to begin in: m, degrees, m/s, degrees/s. Default: at rest at the scene's start, heading "
+            help="Start state: m, degrees, m/s, degrees/s. Default: at rest at the scene's start, heading "
             "for the goal.",
         ),
     ] = None,
     after: Annotated[
-        Path | None, typer.Option(help="Plan again on the way of this trajectory.json, as `plan --out` writes it.")
+        Path | None,
+        typer.Option(help="Start from a state of this trajectory.json, as `plan --out` writes it; see --at."),
     ] = None,
     at: Annotated[
         float | None, typer.Option(help="The time, s, of that trajectory at which the new one begins.")
@@ -54,26 +55,30 @@ def drive(
     ] = None,
     goal: Goal = None,
     vehicle: VehicleName = "nomad200",
-    margin: Annotated[float, typer.Option(help="That paths keep on top of the vehicle's radius, m.")] = 0.1,
-    paths: Annotated[int, typer.Option(min=1, help="Homotopy classes to try from each of two places.")] = 3,
+    margin: Annotated[
+        float, typer.Option(help="Distance that paths keep in addition to the vehicle's radius, m.")
+    ] = 0.1,
+    paths: Annotated[
+        int, typer.Option(min=1, help="Number of homotopy classes to try from each of two positions.")
+    ] = 3,
     out: Annotated[Path | None, typer.Option(help="Folder for trajectory.json, .csv and .png.")] = None,
-    ros: Annotated[Path | None, typer.Option(help="A .yaml or .json for a nav_msgs/Path with times.")] = None,
-    figures: Annotated[bool, typer.Option(help="Draw into --out; needs the extra plots.")] = True,
+    ros: Annotated[Path | None, typer.Option(help="Write a nav_msgs/Path with times (.yaml or .json).")] = None,
+    figures: Annotated[bool, typer.Option(help="Draw figures into --out; needs the extra plots.")] = True,
     as_json: Json = False,
 ) -> None:
-    """Drive from a state in motion to another: nothing jumps, and nothing stops that need not.
+    """Plan a motion from a moving state to another, without jumps of speed and without needless stops.
 
-    Exit code 0: planned, 1: it collides or misses the goal; 2: makes no sense, or nothing leads there.
+    Exit code 0: planned, 1: it collides or misses the goal; 2: invalid arguments, or no motion leads there.
     """
     from pin_metaik import mobile
     from pin_metaik.mobile import plots
 
     if (after is None) != (at is None):
-        raise InvalidSetting("--after and --at go together: which trajectory, and when")
+        raise InvalidSetting("--after and --at go together: a trajectory, and a time in it")
     if after is not None and state is not None:
-        raise InvalidSetting("--from or --after, one of the two: both say where it begins")
+        raise InvalidSetting("give --from or --after, not both: each says where the motion begins")
     if to is not None and goal is not None:
-        raise InvalidSetting("--to or --goal, one of the two: both say where it ends")
+        raise InvalidSetting("give --to or --goal, not both: each says where the motion ends")
     can_write(out, figures, ros)
     robot = mobile.load_vehicle(vehicle)
     if after is not None and at is not None:

@@ -35,22 +35,27 @@ FRAMES_A_SECOND = 4
 def evolve(
     scene: SceneName,
     output: Annotated[
-        Path, typer.Option("--output", "-o", help="Generations side by side: .png, .svg, .pdf; as a film: .gif.")
+        Path,
+        typer.Option(
+            "--output", "-o", help="File: generations side by side (.png, .svg, .pdf) or as an animation (.gif)."
+        ),
     ],
     method: Annotated[str, typer.Option(help=f"A metaheuristic: {', '.join(ALGORITHMS)}.")] = "ga",
     settings: Settings = None,
     fitness: FitnessName = "exact",
-    steps: Annotated[int, typer.Option(min=2, max=100, help="Generations to show, from the first to the last.")] = 8,
+    steps: Annotated[
+        int, typer.Option(min=2, max=100, help="Number of generations to show, from the first to the last.")
+    ] = 8,
     start: Start = None,
     goal: Goal = None,
-    radius: Annotated[float, typer.Option(help="Of the robot.")] = 0.0,
+    radius: Annotated[float, typer.Option(help="Radius of the robot.")] = 0.0,
     via: Annotated[int, typer.Option(min=1, help="Via points.")] = 5,
     evaluations: Annotated[int, typer.Option(min=1, help="Paths it may try.")] = 5000,
     rng: Rng = 0,
 ) -> None:
-    """Step through the generations of a metaheuristic: the population's paths, and the best of each.
+    """Show the generations of a metaheuristic: the paths of the population, and the best of each.
 
-    Exit code 0: its best path is free, 1: it is not, 2: makes no sense, 130: interrupted.
+    Exit code 0: its best path is free, 1: it is not, 2: invalid arguments, 130: interrupted.
     """
     from pin_metaik import mobile
 

@@ -27,19 +27,20 @@ def learn(
     hidden: Annotated[list[int], typer.Option(min=1, help="Neurons of each hidden layer: --hidden 5 5.")] = [5, 5],  # noqa: B006
     trainer: Annotated[str, typer.Option(help=f"One of {', '.join(TRAINERS)}.")] = "lm",
     design: Annotated[
-        str, typer.Option(help="log: logarithms of speed and length, root of the angle; paper: the bare numbers.")
+        str,
+        typer.Option(help="log: logarithms of speed and length, square root of the angle; paper: no transformation."),
     ] = "log",
     points: Annotated[
         str,
-        typer.Option(help="To learn from: the paper's grid, its clustered points (half a minute), or random ones."),
+        typer.Option(help="Training points: the paper's grid, its clustered points (half a minute), or random ones."),
     ] = "grid",
-    iterations: Annotated[int, typer.Option(min=1, help="At most.")] = 4000,
+    iterations: Annotated[int, typer.Option(min=1, help="Largest number of iterations.")] = 4000,
     rng: Rng = 0,
     as_json: Json = False,
 ) -> None:
     """Train a network on the exact tangent lengths of a synchro-drive's turns, and save it for `plan --network`.
 
-    Ctrl-C keeps the best weights so far. Exit code 0: trained, 2: makes no sense, 130: interrupted.
+    Ctrl-C keeps the best weights so far. Exit code 0: trained, 2: invalid arguments, 130: interrupted.
     """
     from pin_metaik import mobile
     from pin_metaik.mobile.motion.turn_data import clustered_points, random_points
@@ -47,7 +48,7 @@ def learn(
     network_file(output)
     robot = mobile.load_vehicle(vehicle)
     if not isinstance(robot, mobile.SynchroDrive):
-        raise InvalidSetting(f"networks are learned for a SynchroDrive, {robot.name} is none")
+        raise InvalidSetting(f"networks are learned for a SynchroDrive, which {robot.name} is not")
     if points not in POINTS:
         raise UnknownName("points to learn from", points, POINTS)
     table = None

@@ -33,25 +33,28 @@ def moving(
             'origin, {"way": ..., "outline": [[x, y], ...]}; s and m.',
         ),
     ],
-    speed: Annotated[float, typer.Option(help="Of the robot, m/s.")],
+    speed: Annotated[float, typer.Option(help="Speed of the robot, m/s.")],
     start: Start = None,
     goal: Goal = None,
-    radius: Annotated[float, typer.Option(help="Of the robot, m.")] = 0.0,
-    margin: Annotated[float, typer.Option(help="To keep on top of that, m.")] = 0.0,
+    radius: Annotated[float, typer.Option(help="Radius of the robot, m.")] = 0.0,
+    margin: Annotated[float, typer.Option(help="Distance to keep in addition to the radius, m.")] = 0.0,
     join: Join = None,
-    begin: Annotated[float, typer.Option(help="When it begins, s, by the obstacles' clock.")] = 0.0,
+    begin: Annotated[float, typer.Option(help="Start time, s, on the time axis of the obstacles.")] = 0.0,
     cells: Annotated[
-        int, typer.Option(min=0, help="Along the longer side of the workspace; in their middles it may turn and wait.")
+        int,
+        typer.Option(
+            min=0, help="Number of cells along the longer side of the workspace, in whose centres it may turn and wait."
+        ),
     ] = 16,
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Write times and places: .csv or .json.")
+        Path | None, typer.Option("--output", "-o", help="Write times and positions: .csv or .json.")
     ] = None,
     picture: Annotated[Path | None, typer.Option(help="Draw it: .png, .svg or .pdf.")] = None,
     as_json: Json = False,
 ) -> None:
-    """The quickest way over a graph of places, with waits, among obstacles that stand and obstacles that move.
+    """The quickest path over a graph of places, with waits, among obstacles at rest and moving obstacles.
 
-    Exit code 0: found; 2: makes no sense, or no motion over these places keeps clear.
+    Exit code 0: found; 2: invalid arguments, or no motion over these places keeps clear.
     """
     from pin_metaik import mobile
     from pin_metaik.mobile import plots
@@ -77,7 +80,7 @@ def moving(
         console = Console(highlight=False)
         console.print(str(plan), style="green" if plan else "yellow", soft_wrap=True)
         gap = f"{plan.clearance:.4g} m" if plan.moving else "nothing moves"
-        console.print(f"  least distance from what moves: {gap}, to keep: {problem.space.clearance:g} m")
+        console.print(f"  least distance from moving obstacles: {gap}, required: {problem.space.clearance:g} m")
         for t, (x, y) in zip(plan.times, plan.points, strict=True):
             console.print(f"  {t:10.4f} s  ({x:.4f}, {y:.4f})")
     say_written([file for file in (output, picture) if file is not None], as_json)

@@ -58,16 +58,16 @@ def plan(
     settings: Settings = None,
     fitness: FitnessName = "exact",
     trajectory: Annotated[
-        str | None, typer.Option(help=f"Plan a trajectory, too: {', '.join(TRAJECTORIES)}; lengths are metres.")
+        str | None, typer.Option(help=f"Also plan a trajectory: {', '.join(TRAJECTORIES)}; lengths are in metres.")
     ] = None,
     network: Annotated[
-        Path | None, typer.Option(help="For ann: a .npz of `mobile learn`; default: one learned anew.")
+        Path | None, typer.Option(help="For ann: a .npz of `mobile learn`; default: a network trained now.")
     ] = None,
     start: Start = None,
     goal: Goal = None,
-    radius: Annotated[float | None, typer.Option(help="Of the robot; default: 0, or the vehicle's.")] = None,
+    radius: Annotated[float | None, typer.Option(help="Radius of the robot; default: 0, or the vehicle's.")] = None,
     margin: Annotated[
-        float | None, typer.Option(help=f"To keep on top of that; default: 0, or {MARGIN} with a trajectory.")
+        float | None, typer.Option(help=f"Distance to keep in addition; default: 0, or {MARGIN} with a trajectory.")
     ] = None,
     join: Join = None,
     unknown: Unknown = None,
@@ -76,25 +76,31 @@ def plan(
     resolution: Resolution = None,
     vehicle: VehicleName = "nomad200",
     paths: Annotated[
-        int, typer.Option(min=1, help="Homotopy classes to try; with a trajectory the quickest of them counts.")
+        int,
+        typer.Option(min=1, help="Number of homotopy classes to try; with a trajectory the quickest of them is taken."),
     ] = 1,
-    via: Annotated[int, typer.Option(min=1, help="Via points of a metaheuristic.")] = 5,
+    via: Annotated[int, typer.Option(min=1, help="Number of via points of a metaheuristic.")] = 5,
     evaluations: Annotated[
-        int, typer.Option(min=1, help="Paths a metaheuristic may try, or straight lines that others may test.")
+        int,
+        typer.Option(
+            min=1, help="Budget: paths that a metaheuristic may try, or straight lines that another planner may test."
+        ),
     ] = 5000,
-    seeded: Annotated[bool, typer.Option("--seeded", help="Start one individual at the shortest path.")] = False,
+    seeded: Annotated[
+        bool, typer.Option("--seeded", help="Start one individual of a metaheuristic at the shortest path.")
+    ] = False,
     rng: Rng = 0,
     out: Annotated[Path | None, typer.Option(help="Folder for scene, path and trajectory: JSON, CSV, PNG.")] = None,
     ros: Annotated[
         Path | None,
-        typer.Option(help="A .yaml or .json for the path as a nav_msgs/Path; with a trajectory its poses and times."),
+        typer.Option(help="Write the path as a nav_msgs/Path (.yaml or .json); with a trajectory its poses and times."),
     ] = None,
     figures: Annotated[bool, typer.Option(help="Draw figures into --out; needs the extra plots.")] = True,
     as_json: Json = False,
 ) -> None:
     """Plan a path among obstacles. Ctrl-C keeps the best so far.
 
-    Exit code 0: planned, 1: what was found collides, or nothing was, 2: the call makes no sense, 130: interrupted.
+    Exit code 0: planned, 1: none was found, or the one found collides, 2: invalid arguments, 130: interrupted.
     """
     from pin_metaik import mobile
 
@@ -193,7 +199,7 @@ def _show(plans: list[PathPlan], motions: list[TrajectoryPlan], best: int) -> No
         if each.interrupted:
             console.print("  interrupted: the best so far")
         if not each.success:
-            what = "nothing was found" if each.status == "NOT_FOUND" else "goes through an obstacle: not a path"
+            what = "no path was found" if each.status == "NOT_FOUND" else "it goes through an obstacle"
             console.print(f"  {what}. Try more evaluations, or --method exact.")
         if motions:
             console.print(f"  trajectory: {motions[i]}", soft_wrap=True)

@@ -35,7 +35,9 @@ def show(
     scene: SceneName,
     start: Start = None,
     goal: Goal = None,
-    radius: Annotated[float, typer.Option(help="Of the robot: obstacles grown by it are dotted in the picture.")] = 0.0,
+    radius: Annotated[
+        float, typer.Option(help="Radius of the robot: obstacles grown by it are dotted in the picture.")
+    ] = 0.0,
     join: Join = None,
     unknown: Unknown = None,
     threshold: Threshold = None,
@@ -43,13 +45,13 @@ def show(
     resolution: Resolution = None,
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Draw it: .png, .svg or .pdf.")] = None,
     save: Annotated[
-        Path | None, typer.Option(help="Write it as a scene's .json, e.g. one made of a map, to edit.")
+        Path | None, typer.Option(help="Write the scene as .json, to edit, e.g. one made from a map.")
     ] = None,
     as_json: Json = False,
 ) -> None:
     """Show a scene before planning: start, goal, obstacles, whether a robot fits; draw it, or write it.
 
-    Exit code 0: the robot has a way, 1: it has none; 2: makes no sense.
+    Exit code 0: there is a path for the robot, 1: there is none; 2: invalid arguments.
     """
     from pin_metaik import mobile
     from pin_metaik.mobile import plots

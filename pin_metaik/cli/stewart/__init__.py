@@ -7,7 +7,8 @@ import typer
 from pin_metaik.cli.stewart import analyse, design, move, show, types
 
 app = typer.Typer(
-    help="General Stewart platforms of slides or servos: analysis and dimensional optimisation.", no_args_is_help=True
+    help="General Stewart platforms with linear actuators or servos: analysis and dimensional optimisation.",
+    no_args_is_help=True,
 )
 app.command("new")(show.new)
 app.command("show")(show.show)

@@ -37,13 +37,16 @@ def analyse(
     file: File,
     pose: Annotated[
         Six | None,
-        typer.Option(metavar="X Y Z R P Y", help="Also one pose: its unit of length, and degrees Rz(Y) Ry(P) Rx(R)."),
+        typer.Option(
+            metavar="X Y Z R P Y",
+            help="Also analyse one pose: in the file's unit of length, and degrees Rz(Y) Ry(P) Rx(R).",
+        ),
     ] = None,
     to: Annotated[
         Six | None,
-        typer.Option(metavar="X Y Z R P Y", help="Also the straight way from --pose to this pose."),
+        typer.Option(metavar="X Y Z R P Y", help="Also analyse the straight motion from --pose to this pose."),
     ] = None,
-    seconds: Annotated[float, typer.Option(help="How long that way takes.")] = 1.0,
+    seconds: Annotated[float, typer.Option(help="Duration of that motion, s.")] = 1.0,
     cells: Cells = None,
     norm: Norm = None,
     length: Length = None,
@@ -53,9 +56,10 @@ def analyse(
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Workspace, dexterity and singularities. Ctrl-C keeps what was seen.
+    """Analyse workspace, dexterity and singularities. Ctrl-C keeps what was surveyed.
 
-    Exit code 0: regular, 1: singular poses in it, or too few legs to hold it; 2: makes no sense, 130: interrupted.
+    Exit code 0: no singular poses, 1: singular poses, or too few legs to hold the platform; 2: invalid
+    arguments, 130: interrupted.
     """
     mechanism = measured(stewart.load_mechanism(file), norm, length)
     if cells is not None:
@@ -65,7 +69,7 @@ def analyse(
         points_file(points)
     T = None if pose is None else pose_of(mechanism, pose)
     if to is not None and T is None:
-        raise InvalidTarget("a way needs both ends: give --pose as well as --to")
+        raise InvalidTarget("a motion needs both ends: give --pose as well as --to")
     way = None if to is None or T is None else stewart.straight(T, pose_of(mechanism, to), seconds)
     with progress_bar("surveying") as watch:
         workspace = kept(lambda: mechanism.survey(watch=watch))

@@ -24,7 +24,7 @@ from pin_metaik.stewart.show.report import Lines
 File = Annotated[str, typer.Argument(help="A .toml file, or one of: " + ", ".join(stewart.mechanism_names()) + ".")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object, in m and rad.")]
 Picture = Annotated[Path | None, typer.Option(help="Also draw it and its workspace: .png, .svg or .pdf.")]
-Norm = Annotated[str | None, typer.Option(help=f"Of the dexterity, instead of the file's: {', '.join(NORMS)}.")]
+Norm = Annotated[str | None, typer.Option(help=f"Norm of the dexterity, instead of the file's: {', '.join(NORMS)}.")]
 Length = Annotated[str | None, typer.Option(help="Characteristic length: rm, best, or in the file's unit.")]
 Six: TypeAlias = tuple[float, float, float, float, float, float]
 Cells = Annotated[int | None, typer.Option(min=1, help="Cells along each axis, instead of the file's.")]

@@ -42,26 +42,26 @@ def design(
             "--set", metavar="KEY=VALUE", help="A setting of the algorithm, such as agents=60. May be repeated."
         ),
     ] = None,
-    evaluations: Annotated[int | None, typer.Option(min=1, help="Designs to look at.")] = None,
+    evaluations: Annotated[int | None, typer.Option(min=1, help="Number of designs to evaluate.")] = None,
     rng: Annotated[int | None, typer.Option(min=0, help="Seed of every random choice.")] = None,
-    index: Annotated[str | None, typer.Option(help=f"What dexterity is: {INDICES}.")] = None,
-    threshold: Annotated[float | None, typer.Option(help="Of nu, for lci.")] = None,
+    index: Annotated[str | None, typer.Option(help=f"Index of dexterity: {INDICES}.")] = None,
+    threshold: Annotated[float | None, typer.Option(help="Least nu of a dexterous pose, for lci.")] = None,
     weights: Annotated[
-        tuple[float, float] | None, typer.Option(metavar="D W", help="Of dexterity and workspace.")
+        tuple[float, float] | None, typer.Option(metavar="D W", help="Weights of dexterity and workspace.")
     ] = None,
-    from_current: Annotated[bool | None, typer.Option(help="Start from the mechanism as it is, too.")] = None,
+    from_current: Annotated[bool | None, typer.Option(help="Also start from the present mechanism.")] = None,
     cells: Cells = None,
     norm: Norm = None,
     length: Length = None,
-    history: Annotated[Path | None, typer.Option(help="Write designs looked at and best fitness: .csv.")] = None,
+    history: Annotated[Path | None, typer.Option(help="Write designs evaluated and best fitness: .csv.")] = None,
     picture: Picture = None,
     as_json: Json = False,
 ) -> None:
-    """Optimise its dimensions; options replace settings of the file. Ctrl-C keeps the best so far.
+    """Optimise a mechanism's dimensions; options replace settings of the file. Ctrl-C keeps the best so far.
 
-    Another algorithm searches with as many agents as the file's. Files are written before anything is printed.
+    Another --algorithm has as many agents as that of the file. Files are written before anything is printed.
 
-    Exit code 0: a design was found, 1: none that can be built, 2: makes no sense, 130: interrupted.
+    Exit code 0: a feasible design was found, 1: none was, 2: invalid arguments, 130: interrupted.
     """
     mechanism = measured(stewart.load_mechanism(file), norm, length)
     given = {

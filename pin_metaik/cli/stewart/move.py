@@ -26,12 +26,14 @@ def forward(
     start: Annotated[
         Six | None, typer.Option(metavar="X Y Z R P Y", help="The pose to start from; default: level over the base.")
     ] = None,
-    every: Annotated[bool, typer.Option("--all", help="Every assembly of six legs, not the nearest one.")] = False,
+    every: Annotated[
+        bool, typer.Option("--all", help="All assemblies of six legs instead of the one nearest to the start.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """The pose at which the legs have these lengths or servos these angles, or all such poses.
 
-    Exit code 0: found, 1: no pose found, or it is not certain that these are all; 2: makes no sense.
+    Exit code 0: found, 1: no pose was found, or it is not proved that these are all; 2: invalid arguments.
     """
     mechanism = stewart.load_mechanism(file)
     geometry = mechanism.geometry
@@ -68,15 +70,16 @@ def forward(
 def follow(
     file: File,
     way: Annotated[
-        Path, typer.Argument(help="A .csv file: time (s), x, y, z and, if it turns, roll, pitch, yaw (degrees).")
+        Path, typer.Argument(help="A .csv file: time (s), x, y, z and, if it rotates, roll, pitch, yaw (degrees).")
     ],
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write the legs over time: .csv.")] = None,
     picture: Annotated[Path | None, typer.Option(help="Draw the legs over time: .png, .svg or .pdf.")] = None,
     as_json: Json = False,
 ) -> None:
-    """Move along a way from a file: lengths and rates of the legs, limits, dexterity, singular poses.
+    """Move along a trajectory from a file: lengths and rates of the legs, limits, dexterity, singular poses.
 
-    Exit code 0: every pose is within the limits, no leg too fast and none singular; 1: not so; 2: makes no sense.
+    Exit code 0: every pose is within the limits, no leg too fast and no pose singular; 1: otherwise; 2: invalid
+    arguments.
     """
     mechanism = stewart.load_mechanism(file)
     can_write(output, picture=picture)

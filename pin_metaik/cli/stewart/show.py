@@ -20,10 +20,10 @@ def show(
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Draw it: .png, .svg or .pdf.")] = None,
     workspace: Annotated[bool, typer.Option(help="Draw its workspace beside it.")] = True,
     above: Annotated[Path | None, typer.Option(help="Draw it from above: .png, .svg or .pdf.")] = None,
-    urdf: Annotated[Path | None, typer.Option(help="Write its URDF, loops open.")] = None,
+    urdf: Annotated[Path | None, typer.Option(help="Write its URDF, with open loops.")] = None,
     toml: Annotated[bool, typer.Option("--toml", help="Print it as TOML instead, with every setting.")] = False,
 ) -> None:
-    """Its dimensions and limits; draw it, or write it for other tools."""
+    """Show a mechanism's dimensions and limits; draw it, or write it for other tools."""
     mechanism = stewart.load_mechanism(file)
     can_write(urdf, picture=output)
     can_write(picture=above)
@@ -42,22 +42,26 @@ def show(
 
 
 def new(
-    type: Annotated[str, typer.Argument(metavar="TYPE", help="Joints a side, base first: 3x3, 4x3 ... 6x6.")],
+    type: Annotated[
+        str, typer.Argument(metavar="TYPE", help="Number of joints of base and platform: 3x3, 4x3 ... 6x6.")
+    ],
     base: Annotated[float, typer.Option(help="Radius of the base's circle, in the unit.")] = 200.0,
     platform: Annotated[float, typer.Option(help="Radius of the platform's circle.")] = 100.0,
     lengths: Annotated[
-        tuple[float, float], typer.Option(metavar="MIN MAX", help="Of a leg, retracted and extended.")
+        tuple[float, float], typer.Option(metavar="MIN MAX", help="Length of a leg, retracted and extended.")
     ] = (250.0, 350.0),
     servos: Annotated[
         tuple[float, float] | None,
-        typer.Option(metavar="HORN ROD", help="Moved by servos instead, with horns and rods of these lengths."),
+        typer.Option(
+            metavar="HORN ROD", help="Use servos instead of linear actuators, with horns and rods of these lengths."
+        ),
     ] = None,
-    legs: Annotated[int, typer.Option(min=3, max=6, help="How many legs.")] = 6,
+    legs: Annotated[int, typer.Option(min=3, max=6, help="Number of legs.")] = 6,
     unit: Annotated[str, typer.Option(help="Unit of length: mm, cm or m.")] = "mm",
     name: Annotated[str | None, typer.Option(help="Its name; default: the type.")] = None,
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Write it: .toml; default: print it.")] = None,
 ) -> None:
-    """Begin a mechanism of a type: a .toml file to edit, analyse and design, in which radii and angles are free."""
+    """Make a new mechanism of a type: a .toml file to edit, analyse and design, with ranges of radii and angles."""
     can_write(output)
     length = LENGTHS.get(unit, LENGTHS["m"])  # the mechanism says which units there are
     dimensions = (length.read(Decimal(str(number))) for number in (base, platform, *(servos or lengths)))

@@ -24,15 +24,17 @@ def types(
         list[str] | None,
         typer.Argument(metavar="[TYPE]...", help=f"Default: {', '.join(stewart.NAMED)}; with servos 6x3 to 6x6."),
     ] = None,
-    evaluations: Annotated[int | None, typer.Option(min=1, help="Designs to look at in each run.")] = None,
-    runs: Annotated[int, typer.Option(min=1, help="Runs for each type, each with a seed of its own.")] = 1,
+    evaluations: Annotated[int | None, typer.Option(min=1, help="Number of designs to evaluate in each run.")] = None,
+    runs: Annotated[int, typer.Option(min=1, help="Number of runs for each type, each with its own seed.")] = 1,
     rng: Annotated[int | None, typer.Option(min=0, help="The first seed.")] = None,
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="A folder for the best of each: .toml.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder for the best design of each type: .toml.")
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Design every type of platform for the task of a file, and compare the designs.
 
-    Exit code 0: each has a design, 1: some have none, 2: makes no sense, 130: interrupted, with what there was.
+    Exit code 0: each has a design, 1: some have none, 2: invalid arguments, 130: interrupted.
     """
     mechanism = stewart.load_mechanism(file)
     if evaluations is not None and mechanism.task is not None:

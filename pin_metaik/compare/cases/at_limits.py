@@ -1,4 +1,4 @@
-"""Exactly at the limits: half of the joints are at one of theirs."""
+"""Exactly at the limits: half of the joints are at one of their limits."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ def measured(robot: Robot, rng: np.random.Generator) -> Chain:
 
 CALIBRATED = Case(
     "calibrated",
-    "Random poses of an arm whose joints sit 1e-3 m and 1e-3 rad off their place: closed forms refuse it.",
+    "Random poses of an arm whose joints are 1e-3 m and 1e-3 rad off their place, so that it has no closed form.",
     draw,
     chain=measured,
 )

@@ -28,15 +28,16 @@ class NoTask(MetaIKError):
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """Poses for the frame of a chain, or lists of goals, one or several in a row.
+    """One target, or a sequence of targets, for a chain: poses of its frame, or lists of goals.
 
     Attributes:
         chain: The arm.
         targets: World poses, or goals that are met together; a method gets one target at a time, and starts from its
             answer to the one before.
-        planted: (K, n) coordinates that reach them, if they were made from some.
-        start: (n,) where to start from; ``None``: anywhere, drawn anew for every seed.
-        world: What must not collide.
+        planted: (K, n) coordinates that the targets were made from, and which therefore reach them; None if there are
+            none.
+        start: (n,) start; ``None``: drawn at random for every seed.
+        world: World in which nothing must collide.
     """
 
     chain: Chain
@@ -48,7 +49,7 @@ class Task:
     @staticmethod
     @checked
     def at(chain: Chain, X: Array, start: Array | None = None) -> Task:
-        """To reach the poses of the coordinates X (K, n)."""
+        """A task whose targets are the poses at the coordinates X (K, n)."""
         X = array("X", X, "K", chain.n)
         return Task(chain, tuple(chain.placements(q)[0] for q in chain.q(X)), X, start)
 
@@ -63,7 +64,7 @@ class Attempt:
     """The answers of a method to a task, and their verdicts.
 
     Attributes:
-        x0: (n,) where it started.
+        x0: (n,) start.
         answers: One for each target.
         verdicts: Pinocchio's, one for each answer.
     """
@@ -79,7 +80,7 @@ class Attempt:
 
     @property
     def unreachable(self) -> bool:
-        """Whether it said of every target that it is out of reach."""
+        """Whether the method reported every target as out of reach."""
         return all(answer.status == IKStatus.UNREACHABLE for answer in self.answers)
 
     @property
@@ -89,7 +90,7 @@ class Attempt:
 
 
 def whole_arm(robot: Robot, rng: np.random.Generator) -> Chain:
-    """The chain of the robot's default frame, no joint locked."""
+    """The chain of the robot's default frame, without locked joints."""
     return Chain(robot.model, robot.frame)
 
 
@@ -101,19 +102,20 @@ def reached(task: Task, attempt: Attempt) -> bool:
 @checked
 @dataclass(frozen=True)
 class Case:
-    """A family of tasks. One object of this class is all that a case of your own takes.
+    """A family of tasks. Your own case is an object of this class.
 
-    Its functions are called with generators that depend on the names of robot and case and on the number of the target
-    alone, so that a task is the same whatever else is compared.
+    Its functions are called with random generators that depend only on the names of robot and case and on the number of
+    the task, so that a task is the same whatever else is compared.
 
     Attributes:
         name: Name on the command line and in tables.
-        about: How its targets are made, one sentence.
-        draw: A task for a chain.
-        chain: The chain that a robot is asked to move; one for all tasks.
-        world: The world of a robot; tasks are drawn until the configurations they are made from are free of collisions.
-        judge: Whether an attempt at a task is a success.
-        success: What that means, one sentence.
+        about: How its targets are made, in one sentence.
+        draw: Function that draws a task for a chain.
+        chain: Function that returns the chain of a robot; one for all tasks.
+        world: Function that returns the world of a robot; tasks are drawn until the configurations that their targets
+            are made from are free of collisions.
+        judge: Function that decides whether an attempt at a task is a success.
+        success: What counts as a success, in one sentence.
     """
 
     name: str
@@ -126,10 +128,10 @@ class Case:
 
     @checked
     def task(self, chain: Chain, world: CollisionWorld | None, rng: np.random.Generator) -> Task:
-        """The task that a generator leads to.
+        """Draw a task with a random generator.
 
         Raises:
-            NoTask: The arm has none, or in so many draws nothing is free of collisions.
+            NoTask: The arm has no such task, or none that is free of collisions was drawn in a limited number of tries.
         """
         if world is None:
             return self.draw(chain, rng)
@@ -141,7 +143,7 @@ class Case:
 
     @checked
     def lacks(self, robot: Robot, rng: np.random.Generator) -> str:
-        """Why a robot has no task of this case, as far as can be told without its world; empty if it has one."""
+        """Why a robot has no task of this case, as far as is known without its world; empty if it has one."""
         try:
             self.draw(self.chain(robot, rng), rng)
         except (NoTask, UnsupportedJoint) as none:

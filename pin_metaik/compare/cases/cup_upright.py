@@ -26,7 +26,7 @@ def draw(chain: Chain, rng: np.random.Generator) -> Task:
 
 CUP_UPRIGHT = Case(
     "cup_upright",
-    "The place of a random configuration's tip, and a direction within five degrees of which an axis of the tip is.",
+    "The tip's position at a random configuration, and an axis of the tip within five degrees of a direction.",
     draw,
     success=BY_GOALS,
 )

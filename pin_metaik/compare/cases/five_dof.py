@@ -1,4 +1,4 @@
-"""Five degrees of freedom: a pose asks for one direction more than the arm has, and still it can be met."""
+"""Five degrees of freedom: poses with one constraint more than the arm has joints, which can nevertheless be met."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Just out of reach: what counts is to say so."""
+"""Just out of reach: success is to report the target as unreachable."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pin_metaik.compare.cases.case import Attempt, Case, Task
 from pin_metaik.kinematics import Chain
 
-REPORTED = "The method says UNREACHABLE, and does not claim to have solved it; to give up in silence is no success."
+REPORTED = "The method says UNREACHABLE, and does not claim to have solved it; finding no solution is not enough."
 BEYOND = (0.001, 0.05)  # m past the bound on the arm's reach
 
 

@@ -1,4 +1,4 @@
-"""Look at a point: an axis of the tip leads through a point, from a distance; nothing else is asked."""
+"""Look at a point: an axis of the tip points at a point from a distance; everything else is free."""
 
 from __future__ import annotations
 
@@ -22,8 +22,7 @@ def draw(chain: Chain, rng: np.random.Generator) -> Task:
 
 LOOK_AT = Case(
     "look_at",
-    "The z axis of the tip leads through a point, from a distance that is met to within 5 cm, as a random "
-    "configuration's does.",
+    "The z axis of the tip points at a point, at a distance that is met to within 5 cm, as at a random configuration.",
     draw,
     success=BY_GOALS,
 )

@@ -1,4 +1,4 @@
-"""Minimal displacement: not any solution, but one that is as near to the start as one there is known to be."""
+"""Minimal displacement: only a solution as near to the start as a known one is a success."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""No solution: a position that the arm reaches, with an orientation that it has not there; what counts is to say so."""
+"""No solution: a reachable position with an orientation that is unreachable there; success is to report that."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def draw(chain: Chain, rng: np.random.Generator) -> Task:
         vain += 1
         if vain == VAIN:
             break
-    raise NoTask("of the random orientations at positions that it reaches none is proved to have no solution")
+    raise NoTask("no random orientation at a reachable position was proved to have no solution")
 
 
 def _unit(rng: np.random.Generator) -> NDArray[np.float64]:

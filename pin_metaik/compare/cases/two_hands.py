@@ -1,4 +1,4 @@
-"""Two hands: one is at a place, and sees the other where it grips what both hold."""
+"""Two hands: one hand at a position, the other at a pose relative to it, as for an object that both hold."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def draw(chain: Chain, rng: np.random.Generator) -> Task:
 
 TWO_HANDS = Case(
     "two_hands",
-    "One hand at a place, the other where the first one sees it, as in a random configuration of both arms.",
+    "One hand at a position, the other at a pose relative to it, as in a random configuration of both arms.",
     draw,
     chain=both_hands,
     success=BY_GOALS,

@@ -1,4 +1,4 @@
-"""Whole body: a robot on legs stands where it stands, keeps its balance, and reaches."""
+"""Whole body: a legged robot keeps its feet in place and its balance, and reaches."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def standing(robot: Robot, rng: np.random.Generator) -> Chain:
         NoTask: It has fewer than two feet, or its base cannot be freed.
     """
     if robot.description.is_mjcf:
-        raise NoTask(f"{robot.name} is MJCF, which says itself what joins its base to the world")
+        raise NoTask(f"{robot.name} is MJCF, whose base joint is part of the file and cannot be replaced")
     model = replace(robot.description, base="free flyer").model()
     links = [frame for frame in model.frames if frame.type == pin.FrameType.BODY]
     feet = [link.name for link in links if FOOT.search(link.name)]
@@ -70,7 +70,7 @@ def draw(chain: Chain, rng: np.random.Generator) -> Task:
             reached = dict(zip(chain.frames, chain.placements(stands.q), strict=True))
             hands = [Target(reached[name], name) for name in chain.frames if name not in feet]
             return Task(chain, ((*stance, *hands, balance),), chain.x(stands.q)[None])
-    raise NoTask(f"none of {DRAWS} bodies that were drawn stands on its feet and balances")
+    raise NoTask(f"none of {DRAWS} random postures is balanced on its feet")
 
 
 def _limits(chain: Chain) -> dict[str, tuple[float, float]]:
@@ -87,8 +87,8 @@ def _ground(feet: list[Array], half: float) -> Array:
 
 WHOLE_BODY = Case(
     "whole_body",
-    "Feet fixed, centre of mass over them, hands (or on three and more feet the base) at poses that a body reaches "
-    "which stands and balances.",
+    "Feet fixed, centre of mass over them, hands (with three or more feet the base) at the poses of a random balanced "
+    "posture.",
     draw,
     chain=standing,
     success=BY_GOALS,

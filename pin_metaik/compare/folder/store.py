@@ -69,7 +69,7 @@ def read_rows(folder: Path) -> list[Trial]:
         try:
             trial = Trial.from_row(json_values(line, f"line {number}", InvalidSetting))
         except (InvalidSetting, TypeError):  # TypeError: a vector that is none
-            raise InvalidSetting(f"line {number} of {path} is no row: take it out to go on") from None
+            raise InvalidSetting(f"line {number} of {path} is not a row: delete it to go on") from None
         rows.setdefault(trial.key, trial)
     return list(rows.values())
 
@@ -106,7 +106,9 @@ class Appender:
                 left = left[self._file.write(left) :]
         except OSError as error:
             self._file.truncate(before)
-            raise CannotWrite(f"cannot write {self._path}: {error.strerror}; what is there is whole") from None
+            raise CannotWrite(
+                f"cannot write {self._path}: {error.strerror}; the rows written before are complete"
+            ) from None
 
 
 def write_parquet(folder: Path, trials: Iterable[Trial]) -> Path:

@@ -1,4 +1,4 @@
-"""The methods by name: the Jacobian family, metaheuristics, hybrids, the default solver, and other people's solvers."""
+"""The methods by name: Jacobian methods, metaheuristics, hybrids, the default solver, and solvers of other packages."""
 
 from __future__ import annotations
 

@@ -16,12 +16,12 @@ class Answer:
     """The answer of a method to a problem.
 
     Attributes:
-        x: (n,) its coordinates, the best it has whether it solved the problem or not.
-        claimed: Whether it says that it solved the problem; Pinocchio will check.
-        evaluations: Kernel evaluations spent: 1 for forward kinematics, ``FK_WITH_JACOBIAN`` with a Jacobian. None when
-            the method does not tell.
+        x: (n,) the best coordinates found, whether the problem is solved or not.
+        claimed: Whether the method claims to have solved the problem; Pinocchio checks it.
+        evaluations: Kernel evaluations spent: 1 for a forward kinematics, ``FK_WITH_JACOBIAN`` for one with a Jacobian.
+            None if the method does not count them.
         status: How it ended, in its own words; ``"UNREACHABLE"`` when it says that the target is out of reach.
-        trace: (g, 2) evaluations and best cost so far, when it has them.
+        trace: (g, 2) evaluations and best cost so far, or None.
     """
 
     x: Array
@@ -33,7 +33,7 @@ class Answer:
 
 @runtime_checkable
 class Method(Protocol):
-    """A method. One object with a name and this call is all that a method of your own takes.
+    """A method to compare. Your own method is any object with a name and this function.
 
     Attributes:
         name: Name in tables.
@@ -48,7 +48,7 @@ class Method(Protocol):
         """Answer a problem.
 
         Args:
-            problem: One target for the one frame of ``problem.chain``, or goals that are met together.
+            problem: One target for the only frame of ``problem.chain``, or goals to be met together.
             x0: (n,) coordinates to start from.
             budget: Kernel evaluations that may be spent.
             rng: The only source of randomness.

@@ -24,7 +24,7 @@ from pin_metaik.optimize.settings import whole
 @checked
 @dataclass(frozen=True)
 class Search:
-    """Starts or a metaheuristic, then a refiner, as ``IKSolver`` combines them.
+    """A method made of starts or a metaheuristic, and a refiner, combined by ``IKSolver``.
 
     Attributes:
         name: Name in tables.
@@ -40,7 +40,7 @@ class Search:
 
     @cached_property
     def solver(self) -> IKSolver:
-        """The solver, but for its budget."""
+        """The solver without its budget."""
         refiner = None if self.refiner is None else Counted(make_refiner(self.refiner))
         return IKSolver(self.seeder, refiner, starts=self.starts, trace=refiner is None)
 

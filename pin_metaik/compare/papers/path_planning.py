@@ -73,8 +73,8 @@ def sections(done: Sequence[Any], options: Options) -> list[Section]:
         Section(
             "The paper's hit test",
             (
-                "It takes the line of a segment for the segment and relies on bounding boxes to tell them apart: it "
-                "misses nothing, and makes some hits up.",
+                "It takes the line of a segment for the segment and relies on bounding boxes to tell "
+                "them apart: it misses no hit, and reports some that are none.",
                 invariant(trials),
             ),
             (hit_table([trial for trial in done if isinstance(trial, HitTrial)]),),
@@ -130,7 +130,7 @@ def pocket(trials: Sequence[PathTrial]) -> str:
         return "Not run."
     clean, free, best = sum(t.f < C_P for t in runs), sum(t.free for t in runs), min(t.f for t in runs)
     return (
-        f"U trap: the paper fills pockets in, so its fitness punishes every path out of one. {clean} of {len(runs)} "
+        f"U trap: the paper fills pockets in, so its fitness penalises every path out of one. {clean} of {len(runs)} "
         f"runs end without a penalty (best f {best:.1f}), and {free} are free. The exact planner gets out."
     )
 

@@ -17,7 +17,7 @@ from pin_metaik.compare.papers.trajectory_setup import (
     SpeedTrial,
 )
 
-CONTROL_IS = {"random": " of the test set, drawn without a thought,", "chebyshev": ", a grid denser at its borders,"}
+CONTROL_IS = {"random": " of the test set", "chebyshev": ", a grid denser at its borders,"}
 NEAR = 2.0  # errors within this factor of the printed ones are the same
 
 

@@ -31,9 +31,9 @@ class PlannerRun:
     Attributes:
         scene: Name of the scene.
         method: Name of the planner.
-        run: Number, from 0; its seed is that of the comparison and this.
-        plan: What came of it.
-        seconds: Processor time, s, from the free space on: a busy machine does not count.
+        run: Number of the run, from 0; its seed is that of the comparison plus this number.
+        plan: Its result.
+        seconds: Processor time, s, from the free space on; it does not depend on the load of the machine.
     """
 
     scene: str
@@ -48,10 +48,10 @@ class PlannerComparison:
     """Runs of path planners on the same scenes.
 
     Attributes:
-        problems: By the name of the scene.
+        problems: The problems, by name of the scene.
         methods: Names of the planners.
-        runs: Those that were done.
-        planned: How many there were to be.
+        runs: The runs that were done.
+        planned: Number of runs of the whole comparison.
     """
 
     problems: Mapping[str, PathProblem]
@@ -92,24 +92,24 @@ def compare_planners(
 ) -> PlannerComparison:
     """Run path planners on the same scenes, with the same budget and the same seeds.
 
-    An evaluation is a path for metaheuristics and a straight line for other searches, so equal budgets are no equal
-    work: the times are. Planners without chance are run once.
+    An evaluation is a path for metaheuristics and a straight line for other searches, so equal budgets are not equal
+    work: compare times. Deterministic planners are run once.
 
     Args:
         problems: A scene or a problem, or several of them.
-        methods: Names as ``mobile.plan_path`` takes them, or objects by the names they are to have.
-        runs: Of every planner on every scene, with the seeds rng, rng + 1, ...
+        methods: Names as for ``mobile.plan_path``, or a mapping from names to such names or planner objects.
+        runs: Number of runs of every planner on every scene, with the seeds rng, rng + 1, ...
         fitness: What metaheuristics minimise.
-        via: Their via points.
+        via: Number of via points of metaheuristics.
         budget: Of each run.
         rng: The first seed.
-        watch: Called before every run with the runs done and in all; True ends the comparison there.
+        watch: Called before every run with the runs done and in all; returning True ends the comparison.
 
     Raises:
         UnknownName: No planner of that name.
         InvalidSetting: No planners, or two scenes of one name.
         Blocked: The robot cannot be at the start or the goal of a scene.
-        NoPath: A scene has no way, so that there is nothing to compare with.
+        NoPath: A scene has no path, and therefore no shortest one to compare with.
         MissingExtra: A planner's package is not installed.
         Interrupted: Ctrl-C; its ``result`` has the runs that are done.
     """

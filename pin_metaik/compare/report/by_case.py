@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from pin_metaik.arrays import Array
 from pin_metaik.compare.folder.manifest import CaseEntry
 from pin_metaik.compare.report import figures
 from pin_metaik.compare.report.overview import DEFAULTS, RANKED, in_words, ranked
 from pin_metaik.compare.report.parts import Column, Figure, Section, Table, Value
+from pin_metaik.compare.results import series
 from pin_metaik.compare.results.results import Results, summarise
 from pin_metaik.compare.results.standing import standing
 from pin_metaik.compare.results.statistics import Pair, friedman
@@ -44,11 +41,7 @@ def by_case(results: Results, case: CaseEntry) -> Section:
 
 def rates(results: Results) -> tuple[Figure, ...]:
     """Solve rates with their intervals."""
-    found: dict[str, dict[str, tuple[float, float, float]]] = {}
-    for case in results.cases:
-        for method in results.methods:
-            summary = summarise(results.rows(case=case, method=method))
-            found.setdefault(case, {})[method] = (summary.rate, *summary.interval)
+    found = {case: series.rates(results, case) for case in results.cases}
 
     def draw(canvas: Any) -> None:
         figures.rates(canvas, found)
@@ -61,26 +54,14 @@ def rates(results: Results) -> tuple[Figure, ...]:
 
 def duels(results: Results) -> tuple[Figure, ...]:
     """Every method against every other."""
-    k = len(results.rankable)
-    ratios: dict[str, Array] = {}
-    certain: dict[str, NDArray[np.bool_]] = {}
-    for case in results.cases:
-        costs = results.costs(case)
-        if k < 2 or not len(costs):
-            continue
-        logs = np.log10(costs)
-        ratios[case] = np.median(logs[:, :, None] - logs[:, None, :], axis=0)
-        certain[case] = np.eye(k, dtype=bool)
-        for pair in results.pairs(case):
-            i, j = results.rankable.index(pair.a), results.rankable.index(pair.b)
-            certain[case][i, j] = certain[case][j, i] = pair.significant
-    if not ratios:
+    fought = {case: found for case in results.cases if (found := series.duels(results, case)) is not None}
+    if not fought:
         return ()
 
     def draw(canvas: Any) -> None:
-        figures.duels(canvas, results.rankable, ratios, certain)
+        figures.duels(canvas, fought)
 
-    width, height = figures.panel_size(len(ratios))
+    width, height = figures.panel_size(len(fought))
     caption = (
         "How many times the evaluations of the method of a column that of a row takes, in the median over tasks, where "
         "an unsolved task counts ten times its budget: blue is fewer, red is more. In grey: the difference is "
@@ -91,16 +72,7 @@ def duels(results: Results) -> tuple[Figure, ...]:
 
 def convergence(results: Results) -> Section | None:
     """Best cost against evaluations, of the methods that keep it; None if none does."""
-    curves: dict[str, dict[str, Array]] = {}
-    for case in results.cases:
-        for method in results.methods:
-            kept = [trial.curve for trial in results.rows(case=case, method=method) if trial.curve is not None]
-            if kept:
-                table = np.array(kept, dtype=float)  # (trials, m), NaN before the first generation
-                known = ~np.isnan(table).any(axis=0)
-                quartiles = np.full((3, len(CURVE)), np.nan)
-                quartiles[:, known] = np.quantile(table[:, known], [0.25, 0.5, 0.75], axis=0)
-                curves.setdefault(case, {})[method] = quartiles
+    curves = {case: found for case in results.cases if (found := series.convergence(results, case))}
     if not curves:
         return None
 
@@ -113,7 +85,7 @@ def convergence(results: Results) -> Section | None:
     figure = Figure("convergence", caption, draw, figures.panel_size(len(curves)))
     text = (
         "Metaheuristics alone: the distance in metres plus the angle in radians that is left. A pose counts as met at "
-        "1e-5. Compiled descents keep no trace of their way.",
+        "1e-5. Compiled descents record no convergence.",
     )
     return Section("Convergence", text, (), (figure,))
 

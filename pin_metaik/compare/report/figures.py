@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from pin_metaik.arrays import Array
+from pin_metaik.compare.results.series import Duels
 
 # Okabe and Ito, black first and their yellow left out: told apart by every eye. Grey, brown, violet if they run out.
 COLOURS = ("#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#8b4513", "#6a3d9a")
@@ -121,24 +122,23 @@ def convergence(canvas: Any, curves: Mapping[str, Mapping[str, Array]], at: Arra
     _labelled(canvas, axes, "kernel evaluations", "best cost so far, m + rad")
 
 
-def duels(canvas: Any, names: Sequence[str], ratios: Mapping[str, Array], certain: Mapping[str, Any]) -> None:
+def duels(canvas: Any, fought: Mapping[str, Duels]) -> None:
     """Every method against every other, a panel a case: how many times fewer evaluations the row's method takes.
 
     Args:
         canvas: An empty ``matplotlib.figure.Figure``.
-        names: Of the k methods.
-        ratios: (k, k) log10 of the row's median cost ratio to the column's, by case.
-        certain: (k, k) whether the difference is significant, by case.
+        fought: All pairs, by case.
     """
-    axes = panels(canvas, list(ratios), sharex=True, sharey=True)
+    axes = panels(canvas, list(fought), sharex=True, sharey=True)
     image = None
     for case, ax in axes.items():
-        image = ax.imshow(ratios[case], cmap="RdBu_r", vmin=-2.0, vmax=2.0)
+        names, ratios, certain = fought[case].methods, fought[case].ratios, fought[case].certain
+        image = ax.imshow(ratios, cmap="RdBu_r", vmin=-2.0, vmax=2.0)
         for i, j in itertools.permutations(range(len(names)), 2):
-            dark = abs(ratios[case][i, j]) > 1.2
-            colour = ("white" if dark else "black") if certain[case][i, j] else "#8a8a8a"
+            dark = abs(ratios[i, j]) > 1.2
+            colour = ("white" if dark else "black") if certain[i, j] else "#8a8a8a"
             size = min(8.0, 60.0 / len(names))
-            ax.text(j, i, times(ratios[case][i, j]), color=colour, fontsize=size, ha="center", va="center")
+            ax.text(j, i, times(ratios[i, j]), color=colour, fontsize=size, ha="center", va="center")
         ax.set_xticks(range(len(names)), names, rotation=90, fontsize="x-small")
         ax.set_yticks(range(len(names)), names, fontsize="x-small")
         ax.tick_params(length=0)

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from pin_metaik.compare.methods.cost import FK_WITH_JACOBIAN
 from pin_metaik.compare.report import figures
 from pin_metaik.compare.report.parts import Column, Figure, Section, Table, Value
+from pin_metaik.compare.results import series
 from pin_metaik.compare.results.results import Results, Summary
 from pin_metaik.compare.results.standing import Place, costs, foremost, standing
-from pin_metaik.compare.results.statistics import compare_pairs, ecdf, friedman
-
-POINTS = 240  # of a distribution's drawing
+from pin_metaik.compare.results.statistics import compare_pairs, friedman
 
 SPENT = (
     Column("solved", ".1%", meter=True),
@@ -81,10 +78,8 @@ def distributions(results: Results, name: str = "ecdf") -> tuple[Figure, ...]:
     """Share of tasks solved against evaluations, a panel a case."""
     if not results.trials or not results.rankable:
         return ()
-    at = np.geomspace(4.0, max(trial.budget for trial in results.trials), POINTS)
-    shares = {
-        case: {method: ecdf(results.spent(case, method), at) for method in results.rankable} for case in results.cases
-    }
+    at = series.evaluations_of(results)
+    shares = {case: series.distributions(results, case, at) for case in results.cases}
     looks, size = figures.lines(results.methods, thick=DEFAULTS), figures.panel_size(len(shares))
     few = [m for m in foremost(standing(results), sorted(DEFAULTS), LINES) if m in results.rankable]
     some = {case: {method: of_case[method] for method in few} for case, of_case in shares.items()}
@@ -156,7 +151,7 @@ def reading(results: Results) -> Section:
         "`lm` is Levenberg-Marquardt (Chan) from the given start alone, `lm+restarts` goes on from random ones; `dls` "
         "is the compiled damped least squares with limits inside the step, `qp` a quadratic program a step. `gwo` is a "
         "metaheuristic alone, `gwo+dls` lets it find starts (a quarter of what is left of the budget, then its eight "
-        "best points are refined, and again). `default` is `solve_ik` as it comes.",
+        "best points are refined, and again). `default` is `solve_ik` without settings.",
     )
     unranked = [method for method in results.methods if method not in results.rankable]
     if unranked:

@@ -71,7 +71,7 @@ def sentence(where: Sequence[str], pairs: Sequence[Pair], rows: Sequence[tuple[V
     solved_more = [f"{method} ({case}, by {gain:.1f} points)" for method, case, gain in gains if gain > 0.0]
     parts = [
         f"At equal evaluations restarts are better in {len(ratios)} of {len(pairs)} comparisons, seeds in "
-        f"{len(seeds)}, and in {verdicts.count('-')} nobody can tell."
+        f"{len(seeds)}, and in {verdicts.count('-')} the difference is not significant."
     ]
     if ratios:
         parts.append(f"Where restarts win, seeds take {np.median(ratios):.3g} times the evaluations in the median.")

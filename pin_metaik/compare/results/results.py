@@ -27,12 +27,12 @@ class Summary:
     """Counts and quantiles of some trials.
 
     Attributes:
-        trials: How many.
-        solved: How many of them are successes.
-        evaluations: Median and 95th percentile of the kernel evaluations of the solved ones; None without any.
-        seconds: Median and 95th percentile of the processor time of all of them, s.
-        false_claims: How many said that they solved it and had not.
-        errors: How many raised an error.
+        trials: Number of trials.
+        solved: Number of successes.
+        evaluations: Median and 95th percentile of the kernel evaluations of the solved trials; None without any.
+        seconds: Median and 95th percentile of the processor time of all trials, s.
+        false_claims: Number of trials whose method claimed success wrongly.
+        errors: Number of trials whose method raised an error.
     """
 
     trials: int
@@ -54,17 +54,17 @@ class Summary:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Its 95 % interval."""
+        """95 % confidence interval of the share of successes."""
         return wilson(self.solved, self.trials)
 
 
 @dataclass(frozen=True, eq=False)
 class Results:
-    """A comparison's rows.
+    """The rows of a comparison, with statistics.
 
     Attributes:
-        manifest: What was asked for.
-        trials: The rows that there are.
+        manifest: The settings of the comparison.
+        trials: The rows so far.
     """
 
     manifest: Manifest
@@ -87,13 +87,13 @@ class Results:
 
     @cached_property
     def rankable(self) -> list[str]:
-        """Names of the methods that report how many evaluations they spend: only these can be ranked by evaluations."""
+        """Names of the methods that report their evaluations: only these can be ranked by evaluations."""
         without_count = {trial.method for trial in self.trials if trial.evaluations is None and trial.error is None}
         return [method for method in self.methods if method not in without_count]
 
     @checked
     def rows(self, *, robot: str | None = None, case: str | None = None, method: str | None = None) -> list[Trial]:
-        """The rows of a robot, a case, a method."""
+        """The rows of a robot, case and method."""
         if method is None:
             groups: Iterable[list[Trial]] = self._groups.values()
             return [t for group in groups for t in group if robot in (None, t.robot) and case in (None, t.case)]
@@ -102,9 +102,9 @@ class Results:
         return [t for r in robots for c in cases for t in self._groups.get((r, c, method), ())]
 
     @checked
-    def spent(self, case: str, method: str) -> Array:
+    def spent(self, case: str, method: str, robot: str | None = None) -> Array:
         """Evaluations to solution of each row, ``inf`` of unsolved ones."""
-        rows = self.rows(case=case, method=method)
+        rows = self.rows(robot=robot, case=case, method=method)
         return np.array(
             [t.evaluations if t.solved and t.evaluations is not None else np.inf for t in rows], dtype=float
         )
@@ -113,9 +113,9 @@ class Results:
     def costs(self, case: str, robot: str | None = None) -> Array:
         """Costs (b, k) of the methods that can be ranked, on every task of a case that all of them tried.
 
-        A trial costs its evaluations, at least 1, if it solved the task, otherwise ten times its budget; a right
-        UNREACHABLE costs 1, as its evaluations are spent on the nearest pose. Several seeds are taken together by
-        the geometric mean.
+        A trial costs its evaluations, at least 1, if it solved the task, otherwise ten times its budget; a correct
+        UNREACHABLE costs 1, because its evaluations are spent on the nearest pose. Several seeds are combined by the
+        geometric mean.
         """
         if (case, robot) not in self._costs:
             self._costs[case, robot] = self._table(case, robot)
@@ -123,16 +123,16 @@ class Results:
 
     @checked
     def hopeless(self, case: str) -> bool:
-        """Whether every success in a case is a right UNREACHABLE: then it says nothing of searches."""
+        """Whether every success in a case is a correct UNREACHABLE, so that the case tells nothing about searches."""
         ends = {trial.status for trial in self.rows(case=case) if trial.solved}
         return ends == {IKStatus.UNREACHABLE}
 
     @checked
-    def pairs(self, case: str) -> list[Pair]:
+    def pairs(self, case: str, robot: str | None = None) -> list[Pair]:
         """Every pair of methods that can be ranked, tested on a case."""
-        if case not in self._pairs:
-            self._pairs[case] = compare_all(self.rankable, self.costs(case))
-        return self._pairs[case]
+        if (case, robot) not in self._pairs:
+            self._pairs[case, robot] = compare_all(self.rankable, self.costs(case, robot))
+        return self._pairs[case, robot]
 
     def _table(self, case: str, robot: str | None) -> Array:
         table: dict[tuple[str, int], dict[str, list[float]]] = {}
@@ -151,7 +151,7 @@ class Results:
         return {}
 
     @cached_property
-    def _pairs(self) -> dict[str, list[Pair]]:
+    def _pairs(self) -> dict[tuple[str, str | None], list[Pair]]:
         return {}
 
     @cached_property
@@ -165,10 +165,10 @@ class Results:
 
 @checked
 def read_results(folder: Path) -> Results:
-    """The comparison of a folder and its rows so far, for statistics.
+    """Read the comparison in a folder and its rows so far.
 
     Raises:
-        InvalidSetting: The folder holds none, or a line in the middle is no row.
+        InvalidSetting: The folder holds no comparison, or a line before the last is not a row.
     """
     return Results(read_manifest(folder), read_rows(folder))
 

@@ -29,7 +29,7 @@ class Replay:
     Attributes:
         trial: The new row.
         row: The stored row; None if there is none yet.
-        task: The task; None if the case could not draw it: the trial has the error.
+        task: The task; None if the case could not draw it, with the error in ``trial``.
     """
 
     trial: Trial
@@ -38,11 +38,11 @@ class Replay:
 
     @property
     def same(self) -> bool:
-        """Whether both are equal, times aside."""
+        """Whether the new and the stored row are equal, apart from their times."""
         return self.row is None or self.row.reproducible == self.trial.reproducible
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain values, for JSON: the new row, the stored one, and whether they are the same."""
+        """Plain values, for JSON: the new row, the stored one, and whether they are equal."""
         row = None if self.row is None else plain(asdict(self.row))
         return {"name": self.trial.name, "same": self.same, "trial": plain(asdict(self.trial)), "row": row}
 
@@ -87,7 +87,7 @@ def replay(folder: Path, name: str) -> Replay:
     """Run a trial of a comparison again.
 
     Args:
-        folder: Of the comparison.
+        folder: Folder of the comparison.
         name: ``robot/case/task/method/seed``.
 
     Raises:

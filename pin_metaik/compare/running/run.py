@@ -34,17 +34,17 @@ from pin_metaik.workers import Backend, check_jobs, need_joblib, worked
 
 @dataclass(frozen=True)
 class Outcome:
-    """How far a comparison is.
+    """Progress of a comparison when its run ended.
 
     Attributes:
-        folder: Where its rows are.
-        done: Rows there are.
-        planned: Rows there shall be.
-        fresh: Rows that were run now.
-        errors: Rows that are errors.
-        seconds: Time taken now, s.
-        absent: Cases that a robot has no task of, and why.
-        error: The error that most rows have; empty without one.
+        folder: Folder with its rows.
+        done: Number of rows in the folder.
+        planned: Number of rows of the whole comparison.
+        fresh: Number of rows added by this run.
+        errors: Number of rows whose method raised an error.
+        seconds: Time taken by this run, s.
+        absent: Pairs of robot and case without tasks, and why.
+        error: The most frequent error; empty if there was none.
     """
 
     folder: Path
@@ -69,7 +69,7 @@ class Outcome:
     def __str__(self) -> str:
         fresh = f"{self.fresh:,} of them now, in {self.seconds:.0f} s"
         errors = f"; {self.errors:,} raised an error, most often {self.error}" if self.errors else ""
-        state = "interrupted: the same command goes on from here" if self.partial else "done"
+        state = "interrupted: the same command resumes from here" if self.partial else "done"
         without = [f"without {line}" for line in self.absent]
         return "\n".join([*without, f"{self.done:,} of {self.planned:,} rows, {fresh}{errors}: {state}"])
 
@@ -85,26 +85,27 @@ def compare(
     command: str = "pin_metaik.compare.compare(...)",
     watch: Watch | None = None,
 ) -> Outcome:
-    """Run a comparison, or the rest of it, into a folder. Ctrl-C, or a kill, loses none of the finished tasks.
+    """Run a comparison, or the rest of it, into a folder. Finished tasks are never lost by Ctrl-C or a kill.
 
-    Rows, but for their times, depend neither on ``jobs`` nor on the backend nor on interruptions. A case that a robot
-    has no task of is left out, and the outcome says so.
+    Apart from their times, rows do not depend on ``jobs``, the backend or interruptions. A case without a task for a
+    robot is left out, which ``Outcome.absent`` reports.
 
     Args:
         suite: What to compare.
-        folder: For the rows; made if it is not there.
-        jobs: Processes; -1: one a core. Of the Dask backend: ignored, the cluster's workers are used.
-        backend: joblib's: ``"loky"`` for processes here, ``"dask"`` for a Dask cluster.
+        folder: Folder for the rows; it is made if it does not exist.
+        jobs: Number of processes; -1: one for each core. Ignored by the Dask backend, which uses all workers of the
+            cluster.
+        backend: Of joblib: ``"loky"`` for processes on this machine, ``"dask"`` for a Dask cluster.
         scheduler: Address of the Dask scheduler, e.g. ``"tcp://node1:8786"``.
-        command: What to write down as the command that did it.
-        watch: Called after every task with rows there are and shall be; True ends the comparison there.
+        command: The command to record in the folder.
+        watch: Called after every task with the rows done and in all; returning True ends the run.
 
     Raises:
         MissingExtra: joblib, pyarrow or distributed are not installed.
         InvalidSetting: The folder holds another comparison, another process works on it, ``jobs`` is 0, or the
             scheduler cannot be reached.
         CannotWrite: The folder cannot be made or written into.
-        NoTask: No robot has a task of any of the cases.
+        NoTask: None of the cases has a task for any of the robots.
         Interrupted: Ctrl-C; its ``result`` is the outcome so far, and the same call goes on from there.
     """
     need_parquet()

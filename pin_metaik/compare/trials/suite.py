@@ -21,7 +21,7 @@ from pin_metaik.robots import load_robot
 @checked
 @dataclass(frozen=True)
 class Suite:
-    """A comparison.
+    """A comparison: robots, cases, methods and budget.
 
     Attributes:
         robots: Names or paths, as ``load_robot`` takes them.
@@ -30,15 +30,15 @@ class Suite:
         tasks: Tasks of each case for each robot.
         seeds: Repetitions of each method on each task.
         budget: Kernel evaluations for each target.
-        rng: Seed of everything random.
-        robots_by_name: The same, by the robots' names.
+        rng: Seed of every random choice.
+        robots_by_name: The robots by name.
         cases_by_name: The cases by name.
         methods_by_name: The methods by name.
 
     Raises:
-        UnknownName: A robot, case or method that there is not.
+        UnknownName: There is no such robot, case or method.
         InvalidSetting: Nothing to compare, a number below one, or two of the same name.
-        MissingExtra: A peer that is not installed.
+        MissingExtra: The package of a method is not installed.
     """
 
     robots: tuple[str, ...]
@@ -68,12 +68,12 @@ class Suite:
 
     @property
     def trials(self) -> int:
-        """How many rows it has."""
+        """Number of its rows."""
         pairs = len(self.robots_by_name) * len(self.cases_by_name)
         return pairs * len(self.methods_by_name) * self.tasks * self.seeds
 
     def absent(self) -> dict[str, str]:
-        """Why a robot has no task of a case, by ``robot/case``; pairs that have tasks are left out."""
+        """Pairs ``robot/case`` without tasks, and why."""
         found = {}
         for (robot, spec), case in itertools.product(self.robots_by_name.items(), self.cases_by_name.values()):
             reason = case.lacks(load_robot(spec), generator(self.rng, robot, case.name))
@@ -85,7 +85,7 @@ class Suite:
     def work_items(
         self, done: Set[tuple[str, str, str, int, int]] = frozenset(), absent: Container[str] = ()
     ) -> Iterator[WorkItem]:
-        """The trials that are not ``done``, a work item a task, without the ``absent`` pairs of robot and case."""
+        """The trials that are not ``done``, one work item for each task, without the ``absent`` pairs."""
         for (robot, spec), case, number in itertools.product(
             self.robots_by_name.items(), self.cases_by_name.values(), range(self.tasks)
         ):

@@ -33,20 +33,20 @@ class Trial:
         case: Name of the case.
         method: Name of the method.
         task: Number of the task.
-        seed: Number of the repetition: other random numbers, and another start where the case leaves it free.
+        seed: Number of the repetition, which has other random numbers and, unless the case sets it, another start.
         budget: Kernel evaluations that were allowed, for all targets of the task together.
         solved: Whether it is a success by the case's judgement, within the budget.
         met: Whether every target is within the tolerances and inside the limits, by Pinocchio.
-        claimed: Whether the method says that it is.
+        claimed: Whether the method claims that they are.
         status: How it ended, in the method's words.
-        error: What was raised, or None.
-        position_error: Of the worst target of the task, by Pinocchio, m.
-        orientation_error: rad.
+        error: The error that was raised, or None.
+        position_error: Position error of the worst target of the task, by Pinocchio, m.
+        orientation_error: Likewise, rad.
         displacement: How far the joints went from the start to the last answer, |x - x0|, rad or m.
-        evaluations: Kernel evaluations spent; None when the method does not tell.
+        evaluations: Kernel evaluations spent; None if the method does not count them.
         x: (n,) the last answer.
-        curve: Best cost so far at the shares ``CURVE`` of the budget, of methods that keep it.
-        seconds: Processor time, s. The one thing that differs from run to run.
+        curve: Best cost so far at the shares ``CURVE`` of the budget, if the method records it.
+        seconds: Processor time, s: the only field that differs from run to run.
     """
 
     robot: str
@@ -70,17 +70,17 @@ class Trial:
 
     @property
     def key(self) -> tuple[str, str, str, int, int]:
-        """Its identity."""
+        """Robot, case, method, task and seed: what identifies the trial."""
         return self.robot, self.case, self.method, self.task, self.seed
 
     @property
     def name(self) -> str:
-        """Its identity as one word that ``pin-metaik replay`` takes."""
+        """The name of the trial for ``pin-metaik replay``."""
         return f"{self.robot}/{self.case}/{self.task}/{self.method}/{self.seed}"
 
     @property
     def reproducible(self) -> dict[str, Any]:
-        """The row without times: equal whenever, wherever and in whatever order it is run."""
+        """The row without times, which does not depend on when, where and in which order it is run."""
         return {name: value for name, value in self.row().items() if name not in TIMES}
 
     def row(self) -> dict[str, Any]:
@@ -93,7 +93,9 @@ class Trial:
         """A trial from a row read back from JSON."""
         fields = Trial.__dataclass_fields__
         if wrong := fields.keys() ^ row.keys():
-            raise InvalidSetting(f"a row of a comparison has the keys {', '.join(fields)}, and {min(wrong)!r} differs")
+            raise InvalidSetting(
+                f"a row of a comparison has the keys {', '.join(fields)}; {min(wrong)!r} is missing or unknown"
+            )
         vectors = {name: None if row[name] is None else tuple(row[name]) for name in ("x", "curve")}
         return Trial(**{**row, **vectors})
 

@@ -13,7 +13,7 @@ from pin_metaik.gui.tab import Tab
 from pin_metaik.mobile import Scene
 
 Colour = tuple[int, int, int]
-STONE, EDGE, WALL = (165, 150, 135), (90, 75, 60), (60, 60, 70)
+STONE, EDGE, WALL = (165, 150, 135), (90, 75, 60), (110, 110, 120)
 START, GOAL = (40, 150, 70), (200, 60, 50)
 HEIGHT = 0.02  # of obstacles, in widths of the map
 ABOVE = 1.5  # heights of what is seen, from which the camera looks down

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from functools import lru_cache
 from typing import Any, Literal, NamedTuple
 
@@ -80,10 +81,11 @@ def _piece(model: pin.Model, one: Any) -> Piece:
 def _triangles(one: Any) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Vertices and triangles; of a mesh from its file, which is far quicker than asking coal for each triangle."""
     read = READERS.get(one.meshPath.rpartition(".")[2].lower())
-    if read is None:
-        return surface(one.geometry)
-    mesh = read(one.meshPath)
-    return np.array(mesh.vertices) * np.array(one.meshScale), np.array(mesh.faces)
+    if read is not None:
+        with suppress(Exception):  # trimesh stumbles, in many ways, over files that coal has read
+            mesh = read(one.meshPath)
+            return np.array(mesh.vertices) * np.array(one.meshScale), np.array(mesh.faces)
+    return surface(one.geometry)
 
 
 def _loaded(path: str) -> Any:

@@ -38,8 +38,8 @@ class PlatformDrawing:
         geometry = mechanism.geometry
         if not ghost:
             self._plate("base", geometry.base_joints, BASE)
-        self._platform = self._scene.add_frame(f"{node}/platform", show_axes=not ghost, axes_length=0.5 * self.size)
-        self._platform.axes_radius = 0.01 * self.size
+        axes = {"axes_length": 0.5 * self.size, "axes_radius": 0.01 * self.size, "origin_radius": 0.02 * self.size}
+        self._platform = self._scene.add_frame(f"{node}/platform", show_axes=not ghost, **axes)
         self._plate("platform/plate", geometry.platform_joints, GHOST if ghost else PLATE)
         self._legs: dict[str, Any] = {}
 

@@ -1,4 +1,4 @@
-"""Goals: what a robot shall do, a file a goal. A registry anyone can read."""
+"""Goals: the conditions that a configuration shall meet (one file each), and their names."""
 
 from __future__ import annotations
 

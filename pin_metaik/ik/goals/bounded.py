@@ -1,4 +1,4 @@
-"""A smooth function of the configuration that shall be inside bounds: what most goals are."""
+"""A smooth function of the configuration that shall be inside bounds: the base of most goals."""
 
 from __future__ import annotations
 

@@ -22,8 +22,8 @@ from pin_metaik.kinematics import Chain
 class CentreOfMass(Bounded):
     """The centre of mass c of the robot over a convex polygon on the ground, between two heights: y = (N c_xy, c_z).
 
-    Over the polygon of its contacts with level ground, a robot that stands still does not tip over. The rows of N are
-    the outward normals of the polygon's edges.
+    A robot at rest does not tip over while its centre of mass is over the polygon of its contacts with level ground.
+    The rows of N are the outward normals of the polygon's edges.
 
     Attributes:
         polygon: Points (k, 2) on the ground, m, of which the convex hull is taken; ``None``: anywhere.
@@ -32,8 +32,8 @@ class CentreOfMass(Bounded):
         most: The largest height, m.
 
     Raises:
-        InvalidTarget: If nothing is asked for, the polygon has no area, the margin is negative or leaves nothing of it,
-            or ``least`` is above ``most``.
+        InvalidTarget: If there is neither a polygon nor a height, the polygon has no area, the margin is negative or
+            leaves nothing of the polygon, or ``least`` is above ``most``.
     """
 
     polygon: ArrayLike | None = None
@@ -42,6 +42,7 @@ class CentreOfMass(Bounded):
     least: float = -math.inf
     most: float = math.inf
     _edges: Array = field(init=False, repr=False)  # (e, 3) outward normals, and how far along them the edges are
+    _range: tuple[Array, Array] = field(init=False, repr=False)  # (e + 1,) bounds of y
 
     def __post_init__(self) -> None:
         """Check everything once, where it enters."""
@@ -54,6 +55,8 @@ class CentreOfMass(Bounded):
             edges = _edges_of(polygon, self.margin)
             object.__setattr__(self, "polygon", polygon.copy())
         object.__setattr__(self, "_edges", edges)
+        least = np.append(np.full(len(edges), -math.inf), self.least)
+        object.__setattr__(self, "_range", (least, np.append(edges[:, 2], self.most)))
 
     @checked
     def check(self, chain: Chain) -> None:
@@ -74,7 +77,7 @@ class CentreOfMass(Bounded):
         return np.concatenate([self._edges[:, :2] @ J[:2], J[2:]])
 
     def _bounds(self, at: Placed) -> tuple[Array, Array]:
-        return np.append(np.full(len(self._edges), -math.inf), self.least), np.append(self._edges[:, 2], self.most)
+        return self._range
 
 
 def _edges_of(polygon: Array, margin: float) -> Array:

@@ -1,4 +1,4 @@
-"""Goals that contradict each other, as far as that is seen without a search: of one frame, or of one joint."""
+"""Goals for one frame or one joint that obviously contradict each other."""
 
 from __future__ import annotations
 

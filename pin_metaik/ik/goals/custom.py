@@ -22,17 +22,18 @@ from pin_metaik.ik.goals.vectors import check_range
 class Custom(Bounded):
     """A function of the configuration that shall be zero, or between two numbers: y = function(q).
 
-    A goal with several numbers and a set of its own is a class with the two methods of ``Goal``.
+    For any other condition write a class with the two methods of ``Goal``.
 
     Attributes:
-        function: Gives a number, or numbers (m,), for a configuration q (nq,).
-        derivative: Gives the derivative (m, n) of that by the coordinates of the chain; ``None``: central differences.
-        least: The least that each number may be.
-        most: The most.
+        function: Function of a configuration q (nq,) that returns a number, or numbers (m,).
+        derivative: Function that returns its derivative (m, n) by the coordinates of the chain; ``None``: central
+            differences.
+        least: Lower bound of each number.
+        most: Upper bound of each number.
 
     Raises:
-        InvalidTarget: If ``function`` is none, or ``least`` is above ``most``. While solving, if the function does not
-            give finite numbers, or the derivative is of another shape.
+        InvalidTarget: If ``function`` cannot be called, or ``least`` is above ``most``. While solving, if the function
+            does not return finite numbers, or the derivative has another shape.
     """
 
     function: Callable[[Array], ArrayLike]

@@ -27,10 +27,11 @@ class Distance(OfFrame):
     Attributes:
         point: (3,), m.
         least: The least distance, m.
-        most: The largest distance, m; equal to ``least``: that distance.
+        most: The largest distance, m; equal to ``least`` for exactly that distance.
 
     Raises:
-        InvalidTarget: If the point is none, a distance is below zero, ``least`` is above ``most``, or both are free.
+        InvalidTarget: If the point is not (3,) finite numbers, a distance is below zero, ``least`` is above ``most``,
+            or neither bounds anything.
     """
 
     point: ArrayLike
@@ -46,7 +47,7 @@ class Distance(OfFrame):
         if self.least < 0.0:
             raise InvalidTarget(f"a distance is at least 0, got {self.least:g}")
         if self.least == 0.0 and self.most == math.inf:
-            raise InvalidTarget("any distance from 0 to inf asks for nothing: give a bound")
+            raise InvalidTarget("a distance from 0 to inf is always met: give least or most")
         object.__setattr__(self, "_origin", as_point("point", self.point))
 
     def _values(self, at: Placed) -> Array:

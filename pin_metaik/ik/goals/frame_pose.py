@@ -1,4 +1,4 @@
-"""The goal of a pose for any frame of the robot, in the world or as another frame sees it."""
+"""The goal of a pose for any frame of the robot, in the world or relative to another frame."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ from pin_metaik.kinematics import Chain
 class FramePose(Posed):
     """A pose, position or orientation for any frame that the chain moves, with tolerances as those of ``Target``.
 
-    With a ``reference`` it is the pose that this other frame sees: two hands on one tray, a camera over the gripper. A
-    pose in the world for a frame of the chain is better given as a ``Target``, which compiled loops evaluate.
+    With a ``reference`` it is the pose relative to that frame: two hands on one tray, a camera over the gripper. For a
+    frame of the chain and a pose in the world use ``Target``, which is evaluated by compiled code.
 
     Attributes:
-        frame: A frame that the chain moves; it need not be one that the chain is made for.
+        frame: Any frame that the chain moves, not only one of ``chain.frames``.
         pose: The pose it shall have: ``pin.SE3`` or (4, 4).
-        reference: Another frame of the robot, in whose coordinates the pose is; ``None``: the world.
+        reference: Another frame of the robot, relative to which the pose is given; ``None``: the world.
         position_tolerance: m; see ``Target``; ``inf`` frees the position.
         orientation_tolerance: rad; ``inf`` frees the orientation.
-        position_weight: What a metre of error counts while searching.
-        orientation_weight: What a radian of error counts while searching.
+        position_weight: Weight of a metre of error in the cost of the search.
+        orientation_weight: Weight of a radian of error in the cost of the search.
 
     Raises:
         InvalidTarget: As ``Target`` does.
@@ -67,7 +67,7 @@ class FramePose(Posed):
 
         Raises:
             FrameNotFound: If the model has no such frame.
-            FixedFrame: If the chain does not move the frame, in the world or as the reference sees it.
+            FixedFrame: If the chain does not move the frame, in the world or relative to the reference.
         """
         check_moved(chain, self.frame, self.reference)
 

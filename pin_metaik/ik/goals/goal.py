@@ -1,4 +1,4 @@
-"""What a goal is, and several goals as one residual."""
+"""The protocol of a goal, and several goals as one residual."""
 
 from __future__ import annotations
 
@@ -16,31 +16,30 @@ from pin_metaik.kinematics import Chain
 
 @runtime_checkable
 class Goal(Protocol):
-    """A set that the robot shall be in, by a residual to descend and a test that counts.
+    """A condition on the robot: a residual that searches minimise, and the test whether it is met.
 
     A goal may have further methods: ``jacobian(at)``, the derivative (m, n) of its residual by the coordinates of
-    ``at.chain`` (central differences stand in for it), ``off(at)``, how far the robot is from the set, by unit, for
-    messages (the size of the residual stands in for it), and ``check(chain)``, which raises an error for a chain that
-    the goal makes no sense for. ``Target`` is the goal that compiled loops evaluate; any other takes ten to a hundred
-    times as long.
+    ``at.chain`` (default: central differences); ``off(at)``, by how much the goal is missed, by unit, for messages
+    (default: the norm of the residual); and ``check(chain)``, which raises an error if the goal makes no sense for the
+    chain. Only ``Target`` is evaluated by compiled code; any other goal takes ten to a hundred times as long.
     """
 
     def residual(self, at: Placed) -> Array:
-        """Weighted distance r (m,) to the set, the same m everywhere, in m and rad; zero inside."""
+        """Weighted residual r (m,), in m and rad, zero where the goal is met exactly; m is the same everywhere."""
         ...
 
     def met(self, at: Placed) -> bool:
-        """Whether the robot is in the set, to within the goal's tolerance."""
+        """Whether the goal is met to within its tolerance."""
         ...
 
 
 class Outcome(NamedTuple):
-    """What came of a goal.
+    """The outcome of a goal at a configuration.
 
     Attributes:
         goal: The goal.
-        met: Whether the robot is in its set, to within the tolerance.
-        off: How far the robot is from the set, by unit: ``{"m": 0.02, "rad": 0.1}``; the tolerance is not taken off.
+        met: Whether it is met to within its tolerance.
+        off: By how much it is missed, by unit: ``{"m": 0.02, "rad": 0.1}``; the tolerance is not subtracted.
     """
 
     goal: Goal
@@ -49,7 +48,7 @@ class Outcome(NamedTuple):
 
     @staticmethod
     def of(goal: Goal, at: Placed) -> Outcome:
-        """Look at a goal where the robot is."""
+        """Evaluate a goal at a configuration of the robot."""
         own = getattr(goal, "off", None)
         off = {"": float(np.linalg.norm(_residual(goal, at, None)))} if own is None else own(at)
         return Outcome(goal, goal.met(at), off)
@@ -70,7 +69,7 @@ def named(goal: Goal) -> str:
 
 
 class Goals(NamedTuple):
-    """Several goals as one residual r (m,), the rows of each after those of the one before.
+    """Several goals as one residual r (m,), which stacks theirs.
 
     Attributes:
         each: The goals.
@@ -82,7 +81,7 @@ class Goals(NamedTuple):
 
     @staticmethod
     def of(chain: Chain, goals: Sequence[Goal]) -> Goals:
-        """Ask each of the goals once, at the chain's reference.
+        """Stack goals, after evaluating each once at the chain's reference.
 
         Raises:
             InvalidTarget: If a residual is not (m,) finite numbers.
@@ -107,19 +106,19 @@ class Goals(NamedTuple):
         return sum(self.sizes)
 
     def met(self, at: Placed) -> bool:
-        """Whether the robot is in all of the sets."""
+        """Whether all goals are met."""
         return all(goal.met(at) for goal in self.each)
 
     def residual(self, at: Placed) -> Array:
         """Residual r (m,).
 
         Raises:
-            InvalidTarget: If that of a goal is not (m,) finite numbers, with the m that it had before.
+            InvalidTarget: If the residual of a goal is not (m,) finite numbers, with the same m as before.
         """
         return np.concatenate([_residual(goal, at, m) for goal, m in zip(self.each, self.sizes, strict=True)])
 
     def cost(self, at: Placed) -> float:
-        """Sum of the norms of the residuals, m and rad alike."""
+        """Sum of the norms of the residuals, m and rad weighted alike."""
         parts = zip(self.each, self.sizes, strict=True)
         return float(sum(np.linalg.norm(_residual(goal, at, m)) for goal, m in parts))
 
@@ -127,7 +126,7 @@ class Goals(NamedTuple):
         """Derivative (m, n) of the residual by the coordinates of the chain.
 
         Raises:
-            InvalidTarget: If that of a goal is not (m, n) finite numbers.
+            InvalidTarget: If the derivative of a goal is not (m, n) finite numbers.
         """
         return np.concatenate([_slopes(goal, at, m) for goal, m in zip(self.each, self.sizes, strict=True)])
 

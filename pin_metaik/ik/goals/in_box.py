@@ -22,12 +22,12 @@ class InBox(OfFrame):
     """A frame's origin in a box: y = R'(p - t), for a box at the pose (R, t).
 
     Attributes:
-        lower: Lower corner (3,) of the box in its own coordinates, m; ``-inf`` for none.
+        lower: Lower corner (3,) of the box in its own coordinates, m; ``-inf`` for no bound.
         upper: Upper corner (3,), likewise.
-        pose: Pose of the box, a ``pin.SE3`` or (4, 4); ``None``: its coordinates are the world's, or the reference's.
+        pose: Pose of the box in the world, or in the reference frame: ``pin.SE3`` or (4, 4); ``None``: the identity.
 
     Raises:
-        InvalidTarget: If the box is empty or everywhere, or the pose is none.
+        InvalidTarget: If the box is empty or has no bound, or the pose is not a finite rigid transform.
     """
 
     lower: ArrayLike
@@ -46,7 +46,7 @@ class InBox(OfFrame):
         if not (lower <= upper).all() or (lower == np.inf).any() or (upper == -np.inf).any():
             raise InvalidTarget(f"a box is from its lower to its upper corner, got {lower} to {upper}: it is empty")
         if not (np.isfinite(lower).any() or np.isfinite(upper).any()):
-            raise InvalidTarget("this box is everywhere: give a bound")
+            raise InvalidTarget("this box has no bound: give at least one")
         into = pin.SE3.Identity() if self.pose is None else as_pose(self.pose).placement.inverse()
         for name, value in (("lower", lower), ("upper", upper), ("_into", into)):
             object.__setattr__(self, name, value)

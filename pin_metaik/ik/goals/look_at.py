@@ -21,17 +21,18 @@ NEAREST = 1e-9  # m, of a point that still is in some direction
 @checked_as(InvalidTarget)
 @dataclass(frozen=True, eq=False)
 class LookAt(Aimed):
-    """An axis of a frame, from its origin p on, leads through a point c: d = (c - p) / |c - p|. Roll about it is free.
+    """An axis of a frame points from its origin p to a point c: d = (c - p) / |c - p|. The roll about it is free.
 
     With a ``reference`` the point is given in that frame: ``LookAt("camera", (0, 0, 0), reference="gripper")`` keeps
-    the gripper in view. The tolerance is an angle (rad), half the opening of the cone that the point may be in.
+    the gripper in view. The tolerance is an angle (rad): half the opening of the cone around the axis in which the
+    point may be.
 
     Attributes:
-        point: (3,), m, in the world or the reference.
-        axis: Axis of the frame that looks, by default z.
+        point: (3,), m, in the world or in the reference frame.
+        axis: Viewing axis in the frame, by default z.
 
     Raises:
-        InvalidTarget: If the point or the axis is none, or the tolerance is half a turn or more.
+        InvalidTarget: If the point or the axis is not a finite vector (3,), or the tolerance is half a turn or more.
     """
 
     point: ArrayLike

@@ -1,4 +1,4 @@
-"""The goal of a closed loop: two places on the robot that belong together."""
+"""The goal of a closed kinematic loop: two points or frames of the robot coincide."""
 
 from __future__ import annotations
 
@@ -25,21 +25,21 @@ Closure: TypeAlias = (
 @checked_as(InvalidTarget)
 @dataclass(frozen=True, eq=False)
 class Loop(Posed):
-    """A loop of joints is closed where two places on the robot belong together: a point, or a frame and its axes.
+    """A kinematic loop is closed: two points, or two frames, of the robot coincide.
 
-    Pinocchio's models are trees: a loop of a mechanism is cut open, and its two ends are kept together by a constraint.
-    As a goal, the second end of the constraint is where the first one sees it: at the same point (``CONTACT_3D``,
-    ``PointAnchorConstraintModel``, but for the offset that this desires), or in the same pose (``CONTACT_6D``,
-    ``FrameAnchorConstraintModel``). The chain has to move the joints on both sides, for which ``ends`` has the frames.
+    Pinocchio's models are trees: a loop of a mechanism is cut, and its two ends are kept together by a constraint. As a
+    goal, both ends of the constraint are at the same point (``CONTACT_3D``, ``PointAnchorConstraintModel``, apart from
+    its desired offset) or in the same pose (``CONTACT_6D``, ``FrameAnchorConstraintModel``). The chain must move the
+    joints on both sides: make it for the frames that ``ends`` returns.
 
     Attributes:
         closure: Pinocchio's constraint, e.g. one of ``robot.loops``.
         position_tolerance: m.
-        orientation_tolerance: rad; of points it does not count.
+        orientation_tolerance: rad; not used for points.
 
     Raises:
-        InvalidTarget: If the constraint closes no loop, such as a joint's friction, desires more than that its ends
-            coincide, which Pinocchio heeds of points alone, or a tolerance is not above zero.
+        InvalidTarget: If the constraint closes no loop (for instance the friction of a joint), if it has a desired
+            offset that is not of a point (Pinocchio ignores it), or if a tolerance is not above zero.
     """
 
     closure: Closure
@@ -63,13 +63,13 @@ class Loop(Posed):
 
     @property
     def about(self) -> str:
-        """The two joints whose links belong together, for messages."""
+        """The two joints whose links are to be joined, for messages."""
         (first, _), (second, _) = self._ends
         return self.closure.name or f"joints {first} and {second}"
 
     @checked
     def ends(self, model: pin.Model) -> tuple[str, ...]:
-        """The links that belong together, those that a joint moves: a chain for these frames moves the whole loop.
+        """Frames of the links to be joined, as far as joints move them: a chain for these frames moves the whole loop.
 
         Raises:
             InvalidTarget: If the constraint is of another model.
@@ -130,7 +130,7 @@ def _desired(closure: Closure) -> tuple[pin.SE3, bool]:
                 f"FrameAnchorConstraintModel, got {shown(closure)}"
             )
     if not heeded:
-        raise InvalidTarget(f"Pinocchio does not heed {desired} of this constraint: make it part of joint2_placement")
+        raise InvalidTarget(f"Pinocchio ignores {desired} of this constraint: make it part of joint2_placement")
     return pin.SE3.Identity(), oriented
 
 

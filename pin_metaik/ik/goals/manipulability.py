@@ -1,4 +1,4 @@
-"""The goal of a robot that can move well where it stands."""
+"""The goal of a least manipulability."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ ROWS: dict[Rows, slice] = {"pose": slice(0, 6), "position": slice(0, 3), "orient
 @checked_as(InvalidTarget)
 @dataclass(frozen=True, eq=False)
 class Manipulability(OfFrame):
-    """Yoshikawa's (1985) measure of a frame's Jacobian, y = sqrt(det(J J')), is at least so much.
+    """Yoshikawa's (1985) measure of a frame's Jacobian, y = sqrt(det(J J')), is at least ``least``.
 
     The derivative is by central differences of the measure.
 
     Attributes:
-        least: The least measure, in the unit of the determinant: m and rad alike.
-        of: Which rows of the Jacobian: those of the ``"pose"``, the ``"position"`` or the ``"orientation"``.
+        least: Lower bound of the measure, which mixes m and rad.
+        of: Rows of the Jacobian: those of the ``"pose"``, the ``"position"`` or the ``"orientation"``.
 
     Raises:
         InvalidTarget: If ``least`` is not above 0, or ``of`` is none of these.

@@ -22,8 +22,8 @@ from pin_metaik.kinematics import Chain
 class MidRange(Bounded):
     """All joints in the middle part of their ranges: y = (x - middle) / half, between minus and plus ``share``.
 
-    ``MidRange(0.9)`` avoids the limits by a tenth of half the range; ``MidRange(0)``, as a wish, centres the joints.
-    Joints without limits, and those that cannot move, do not count.
+    ``MidRange(0.9)`` keeps every joint off its limits by a tenth of half its range; ``MidRange(0)``, as a wish, centres
+    the joints. Joints without limits, and those that cannot move, are ignored.
 
     Attributes:
         share: Share of each range, from 0, its middle, to 1.
@@ -49,7 +49,7 @@ class MidRange(Bounded):
             InvalidTarget: If none of its joints has two limits and a range between them.
         """
         if not len(_ranges(chain)[0]):
-            raise InvalidTarget(f"no joint of {chain} has two limits to be in the middle of")
+            raise InvalidTarget(f"no joint of {chain} has two finite limits, and so a middle")
 
     def _values(self, at: Placed) -> Array:
         columns, middle, half = _ranges(at.chain)

@@ -19,19 +19,19 @@ from pin_metaik.ik.goals.vectors import Direction, across, as_direction, as_poin
 @checked_as(InvalidTarget)
 @dataclass(frozen=True, eq=False)
 class OnLine(OfFrame):
-    """A frame's origin on a line through a point, or between two places on it: y = B (p - point).
+    """A frame's origin on a line through a point, or on a segment of it: y = B (p - point).
 
-    The rows of B are two vectors across the line, and the line's direction; the bounds are 0, 0, and ``least`` to
-    ``most``.
+    The rows of B are two unit vectors normal to the line, and its direction; the first two of y are 0, the third is
+    between ``least`` and ``most``.
 
     Attributes:
         point: A point (3,) of the line, m.
-        direction: Of the line: ``"x"``, ``"-z"``, ..., or a vector (3,).
-        least: How far (m) along the direction from the point the frame may be, at least.
-        most: Likewise, at most.
+        direction: Direction of the line: ``"x"``, ``"-z"``, ..., or a vector (3,).
+        least: Lower bound of the distance (m) from the point along the direction.
+        most: Upper bound of that distance, m.
 
     Raises:
-        InvalidTarget: If the point or the direction is none, or ``least`` is above ``most``.
+        InvalidTarget: If the point or the direction is not a finite vector (3,), or ``least`` is above ``most``.
     """
 
     point: ArrayLike

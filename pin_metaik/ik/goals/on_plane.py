@@ -17,18 +17,18 @@ from pin_metaik.ik.goals.vectors import Direction, as_direction, as_point, check
 @checked_as(InvalidTarget)
 @dataclass(frozen=True, eq=False)
 class OnPlane(OfFrame):
-    """A frame's origin on a plane, or between two planes that are parallel: y = normal . (p - point).
+    """A frame's origin on a plane, or between two parallel planes: y = normal . (p - point).
 
     ``OnPlane(frame, point, "z", most=inf)`` is the half space above a point.
 
     Attributes:
         point: A point (3,) of the plane, m.
-        normal: Of the plane: ``"x"``, ``"-z"``, ..., or a vector (3,).
-        least: Height (m) over the plane, at least.
-        most: Likewise, at most.
+        normal: Normal of the plane: ``"x"``, ``"-z"``, ..., or a vector (3,).
+        least: Lower bound of the height (m) over the plane.
+        most: Upper bound of that height, m.
 
     Raises:
-        InvalidTarget: If the point or the normal is none, or ``least`` is above ``most``.
+        InvalidTarget: If the point or the normal is not a finite vector (3,), or ``least`` is above ``most``.
     """
 
     point: ArrayLike

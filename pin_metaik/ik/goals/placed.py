@@ -1,4 +1,4 @@
-"""The robot at one configuration: what a goal looks at."""
+"""The robot at one configuration, as given to goals."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Found = TypeVar("Found")
 
 
 class Placed:
-    """The robot at one configuration: what a goal looks at. All of it is Pinocchio's, computed when asked for.
+    """The robot at one configuration, as given to goals; computed by Pinocchio on demand.
 
     Attributes:
         chain: The chain whose coordinates are searched.
@@ -64,10 +64,10 @@ class Placed:
         return pose
 
     def jacobian(self, frame: str, reference: str | None = None) -> Array:
-        """Velocity (6, n) of a frame's origin (m) and of its orientation (rad), by the coordinates of the chain.
+        """Jacobian (6, n) of a frame by the chain's coordinates: of its origin (m), then of its orientation (rad).
 
-        Along the axes of the world; with a reference, relative to that frame and along its axes. Coordinates that mimic
-        joints follow have what their followers do in them.
+        In the axes of the world or, with a reference, relative to that frame and in its axes. The column of a
+        coordinate includes the motion of its mimic joints.
 
         Raises:
             FrameNotFound: If the model has no such frame.
@@ -111,7 +111,7 @@ class Placed:
 
     @cached_property
     def centre_of_mass_jacobian(self) -> Array:
-        """(3, n) its derivative by the coordinates of the chain."""
+        """(3, n) derivative of the centre of mass by the coordinates of the chain."""
         return self._by_coordinates(pin.jacobianCenterOfMass(self.chain.model, self.chain.data, self.q))
 
     def _by_coordinates(self, J: Array) -> Array:
@@ -126,7 +126,7 @@ class Placed:
 
     @cached_property
     def around(self) -> tuple[tuple[Placed, Placed], ...]:
-        """The robot a step ahead and a step back in each of the n coordinates, for central differences."""
+        """The robot one step forwards and one step back in each of the n coordinates, for central differences."""
         steps = STEP * np.eye(self.chain.n)
         return tuple((self._moved(h), self._moved(-h)) for h in steps)
 

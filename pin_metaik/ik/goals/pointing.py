@@ -31,7 +31,7 @@ class Aimed(OfFrame):
     def _aim_with(self, axis: Direction) -> None:
         """Take an axis of the frame; raises InvalidTarget for none, or a tolerance of half a turn and more."""
         if self.tolerance >= math.pi:
-            raise InvalidTarget(f"tolerance is below pi, which every direction is within, got {self.tolerance:g}")
+            raise InvalidTarget(f"tolerance is below pi rad, as every direction is within pi, got {self.tolerance:g}")
         object.__setattr__(self, "_axis", as_direction("axis", axis))
 
     @abstractmethod
@@ -62,17 +62,17 @@ class Aimed(OfFrame):
 @checked_as(InvalidTarget)
 @dataclass(frozen=True, eq=False)
 class Pointing(Aimed):
-    """An axis of a frame points in a direction, or within a cone around it, half of whose opening is the tolerance.
+    """An axis of a frame points in a direction; the tolerance is the half opening (rad) of the cone around it.
 
-    ``Pointing("hand", "z", "-z")`` points down, ``Pointing("hand", "z", "z", tolerance=0.1)`` carries a cup upright. An
-    axis against a direction is along the opposite one.
+    ``Pointing("hand", "z", "-z")`` points down, ``Pointing("hand", "z", "z", tolerance=0.1)`` carries a cup upright.
 
     Attributes:
         axis: Axis of the frame: ``"x"``, ``"-z"``, ..., or a vector (3,) in the frame's coordinates.
-        direction: Likewise, in the world's coordinates or the reference's.
+        direction: Likewise, in the world or in the reference frame.
 
     Raises:
-        InvalidTarget: If the axis or the direction is none, or the tolerance is half a turn or more.
+        InvalidTarget: If the axis or the direction is not a finite vector (3,), or the tolerance is half a turn or
+            more.
     """
 
     axis: Direction

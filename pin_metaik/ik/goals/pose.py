@@ -39,16 +39,16 @@ class Target:
     orientation error is the rotation vector log(R_target' R).
 
     Attributes:
-        pose: World pose the frame shall reach: ``pin.SE3`` or (4, 4); kept as ``pin.SE3``.
+        pose: World pose that the frame shall reach: ``pin.SE3`` or (4, 4); kept as ``pin.SE3``.
         frame: Which frame of the chain; ``None`` for a chain's only one.
         position_tolerance: m.
         orientation_tolerance: rad.
-        position_weight: What a metre of error counts while searching.
-        orientation_weight: What a radian of error counts while searching.
+        position_weight: Weight of a metre of error in the cost of the search.
+        orientation_weight: Weight of a radian of error in the cost of the search.
 
     Raises:
-        InvalidTarget: If the pose is not one, a tolerance is not above zero, a weight is not finite and above zero, or
-            nothing is left that counts.
+        InvalidTarget: If the pose is not a finite rigid transform, a tolerance is not above zero, a weight is not
+            finite and above zero, or all six axes are free.
     """
 
     _asks: ClassVar[bool] = True
@@ -94,7 +94,7 @@ class Target:
 
     @staticmethod
     def facing(rotation: ArrayLike, *, frame: str | None = None, tolerance: Tolerance = DEFAULT_TOLERANCE) -> Target:
-        """An orientation (3, 3), anywhere."""
+        """An orientation (3, 3) in the world, at any position."""
         matrix = array("an orientation", rotation, 3, 3, error=InvalidTarget)
         pose = pin.SE3(matrix, np.zeros(3))
         return Target(pose, frame, position_tolerance=FREE, orientation_tolerance=tolerance)
@@ -118,7 +118,7 @@ class Target:
 
     @property
     def plain(self) -> bool:
-        """Whether it is a whole pose or a position alone, with a radius for a tolerance and equal weights."""
+        """Whether it is a whole pose or a position alone, with tolerances that are single numbers and equal weights."""
         return (
             self.frame is None
             and isinstance(self.position_tolerance, float)
@@ -139,17 +139,17 @@ class Target:
 
     @property
     def allowance(self) -> tuple[float, float]:
-        """The largest distance (m) and angle (rad) that may still be met; ``inf`` when an axis is free."""
+        """The largest distance (m) and angle (rad) within the tolerances; ``inf`` when an axis is free."""
         return _radius(self.position_tolerance), _radius(self.orientation_tolerance)
 
     @property
     def tilt(self) -> float:
-        """The largest angle (rad) that may still be met about the axes that are not free; 0 where all are."""
+        """The largest angle (rad) within the tolerances about the axes that are not free; 0 if all are free."""
         each = self.orientation_tolerance
         return _radius(tuple(t for t in each if t < FREE) if isinstance(each, tuple) else 0.0 if each == FREE else each)
 
     def residual(self, at: Placed) -> NDArray[np.float64]:
-        """(6,) weighted errors of position (m) and orientation (rad) beyond the tolerances, as every goal has them."""
+        """(6,) weighted errors of position (m) and orientation (rad) beyond the tolerances; see ``Goal.residual``."""
         return self._beyond(self._placement(at))
 
     def jacobian(self, at: Placed) -> NDArray[np.float64]:
@@ -192,7 +192,7 @@ class Target:
         return at.chain.frames[0] if self.frame is None else self.frame
 
     def off(self, at: Placed) -> dict[str, float]:
-        """Distance (m) and angle (rad) from the pose, over the axes that count."""
+        """Distance (m) and angle (rad) from the pose, over the axes that are not free."""
         return self._off(self._placement(at))
 
     def _off(self, placement: pin.SE3) -> dict[str, float]:
@@ -202,7 +202,7 @@ class Target:
         return {unit: size for unit, size in sizes.items() if counted[unit]}
 
     def judge(self, placement: pin.SE3) -> Judgement:
-        """How far a world placement is from this target, and whether that is close enough; by Pinocchio."""
+        """How far a world placement is from this target, and whether that is within the tolerances; by Pinocchio."""
         instance(pin.SE3, placement=placement)
         error = self.pose.actInv(placement)
         position, near = _measure(error.translation.tolist(), self.position_tolerance)

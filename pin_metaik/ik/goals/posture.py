@@ -23,13 +23,13 @@ from pin_metaik.kinematics import Chain
 @checked_as(InvalidTarget)
 @dataclass(frozen=True, eq=False)
 class Posture(Bounded):
-    """Joints of the chain at given values, or between two values: y = x; rad and m alike.
+    """Joints of the chain at given values, or between two values: y = x; rad and m weighted alike.
 
-    ``Posture(q0)`` is near a configuration; as a wish it displaces the robot as little as the other goals allow.
+    ``Posture(q0)`` asks for a configuration; as a wish it keeps the robot as near to it as the other goals allow.
 
     Attributes:
-        joints: A configuration (nq,), of which the chain's joints count, or values by name of the joint, each a number
-            or a range (least, most).
+        joints: A configuration (nq,), of which the chain's joints are used, or a mapping from names of joints to a
+            value or a range (least, most).
 
     Raises:
         InvalidTarget: If there are no values, one is not finite, or a range is empty.
@@ -43,7 +43,7 @@ class Posture(Bounded):
         super().__post_init__()
         if isinstance(self.joints, Mapping):
             if not self.joints:
-                raise InvalidTarget("a posture is of at least one joint, got none")
+                raise InvalidTarget("a posture needs at least one joint, got none")
             spans = {name: _as_span(name, value) for name, value in self.joints.items()}
             object.__setattr__(self, "joints", spans)
         else:
@@ -97,9 +97,10 @@ def joints_of(posture: Posture, chain: Chain) -> tuple[list[int], Array, Array]:
 
 def _as_span(name: str, value: float | tuple[float, float]) -> tuple[float, float]:
     """A number, or a range, as a range."""
-    span = np.asarray(value, dtype=float) if np.ndim(value) == 0 else array(name, value, 2, finite=False)
-    least, most = (float(span), float(span)) if span.ndim == 0 else (float(span[0]), float(span[1]))
+    several = isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim > 0)
+    span = value if several else (value, value)
+    least, most = array(f"joint {name!r}", span, 2, error=InvalidTarget, finite=False)
     if not math.isfinite(least) and least == most:
-        raise InvalidTarget(f"joint {name!r} at a finite value or in a range, got {value!r}")
+        raise InvalidTarget(f"a posture gives joint {name!r} a finite value or a range (least, most), got {value!r}")
     check_range(f"joint {name!r}", least, most)
-    return least, most
+    return float(least), float(most)

@@ -1,4 +1,4 @@
-"""Points, directions and ranges that somebody gives, looked at."""
+"""Checks of points, directions and ranges."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def check_range(name: str, least: float, most: float) -> None:
     if not least <= most or least == math.inf or most == -math.inf:
         raise InvalidTarget(f"{name} is a range from the least to the most, got {least:g} to {most:g}")
     if least == -math.inf and most == math.inf:
-        raise InvalidTarget(f"{name} from -inf to inf asks for nothing: give a bound")
+        raise InvalidTarget(f"{name} from -inf to inf is always met: give a bound")
 
 
 def across(direction: Array) -> Array:

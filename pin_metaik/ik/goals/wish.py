@@ -1,4 +1,4 @@
-"""A wish: a goal that is met as well as the others allow."""
+"""A wish: a goal that is improved as far as the others leave freedom."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from pin_metaik.kinematics import Chain
 @checked_as(InvalidTarget)
 @dataclass(frozen=True, eq=False)
 class Wish:
-    """A goal that does not count for ``SOLVED``: it is improved in the freedom that the others leave, if they do.
+    """A goal that need not be met: it is improved as far as the other goals leave freedom.
 
     ``mik.solve_ik(chain, [pose, Wish(MidRange(0))])``: the pose, and of its solutions one whose joints are near the
-    middle of their ranges. ``result.wishes`` says what became of it.
+    middle of their ranges. ``result.wishes`` has its outcome.
 
     Attributes:
         goal: Any goal.
-        weight: What a unit of its residual counts beside other wishes.
+        weight: Weight of its residual relative to other wishes.
 
     Raises:
-        InvalidTarget: If the goal is none, or the weight is not a finite number above 0.
+        InvalidTarget: If ``goal`` is not a goal, or the weight is not a finite number above 0.
     """
 
     goal: Goal

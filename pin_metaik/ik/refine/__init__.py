@@ -1,4 +1,4 @@
-"""Refiners: from a start near a solution to the solution. A registry anyone can read."""
+"""Refiners: local methods that go from a start to a nearby solution, by name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a global search asks of a refiner: descents from one start, from a table of samples, and to all solutions.
+"""The descents that a global search needs of a refiner: from one start, from a table of samples, and to all solutions.
 
 Damped least squares does it in compiled loops; of any other refiner only ``refine`` is called, one start at a time.
 """

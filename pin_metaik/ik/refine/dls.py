@@ -25,12 +25,13 @@ class DLS:
     """Damped least squares (Nakamura and Hanafusa 1986; Wampler 1986), all starts in one compiled loop.
 
     Each step is dx = -J' (J J' + lambda I)^-1 e over the joints that are not at a limit and pushed outward, with
-    lambda = damping |e|^2 + 1e-9. Joints that would cross a limit go onto it and the step is solved again for the
-    others. A start is given up when four steps do not take the error below 70 % of what it was. Goals that only Python
-    evaluates are descended to by the same steps in NumPy, with ten times the damping: their residuals are more curved.
+    lambda = damping |e|^2 + 1e-9. Joints that would cross a limit are put on it, and the step is solved again for the
+    others. A start is given up when four steps have not reduced the squared error to below 70 % of its value before
+    them. For goals that are evaluated in Python the same steps are taken in NumPy, with ten times the damping, because
+    their residuals are more curved.
 
     Attributes:
-        damping: What the squared error is multiplied with, 1/m^2 or 1/rad^2.
+        damping: Factor of the squared error in lambda, 1/m^2 or 1/rad^2.
         iterations: Steps from one start at most.
     """
 
@@ -45,7 +46,7 @@ class DLS:
             raise InvalidSetting(f"iterations is at least 1, got {self.iterations!r}")
 
     def descent(self) -> CompiledDescent:
-        """Its compiled loops, as a global search takes them."""
+        """The compiled loops of this refiner, for a global search."""
         return CompiledDescent(self.damping, self.iterations, Stepwise(InNumPy(CURVED * self.damping, self.iterations)))
 
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
@@ -53,14 +54,14 @@ class DLS:
         return self.descent().refine(problem, given_starts(problem, starts, evaluations), evaluations)
 
     def refine_anywhere(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
-        """The same, but from the sampled configurations that have the nearest poses, too.
+        """As ``refine``, but also from those sampled configurations whose poses are nearest to the target.
 
         The first start (s, n) goes before them when its pose is nearer to the target than theirs.
         """
         return self.descent().refine_anywhere(problem, given_starts(problem, starts, evaluations), evaluations)
 
     def settle(self, problem: IKProblem, x: NDArray[np.float64], evaluations: int) -> Refinement:
-        """Go on from x (n,) in small steps as long as it gets nearer at all: for targets that cannot be met."""
+        """Go on from x (n,) in small steps for as long as the error falls: for targets that cannot be met."""
         return self.descent().settle(problem, given_starts(problem, [x], evaluations)[0], evaluations)
 
 

@@ -17,7 +17,7 @@ from pin_metaik.optimize.settings import within
 class Newton:
     """Newton-Raphson, dx = -J^+ r (Whitney 1969), clipped at the limits.
 
-    Nothing tames the step near singular poses but the cutoff: a classical comparator, quick where all is regular.
+    Only the cutoff limits the step near singular poses: a classical method for comparison, quick at regular poses.
 
     Attributes:
         cutoff: Singular values of J below this share of the largest count as 0.

@@ -1,4 +1,4 @@
-"""What a refiner is."""
+"""The protocol of a refiner."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def given_starts(problem: IKProblem, starts: ArrayLike, evaluations: int) -> NDA
 
 @runtime_checkable
 class Refiner(Protocol):
-    """Anything that walks from a start to a nearby solution and stays inside the limits."""
+    """Any local method that goes from a start to a nearby solution and stays inside the limits."""
 
     def refine(self, problem: IKProblem, starts: NDArray[np.float64], evaluations: int) -> Refinement:
         """Descend from each of the starts (s, n), in order, until one meets the tolerances or the budget is spent."""

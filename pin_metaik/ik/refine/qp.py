@@ -26,17 +26,18 @@ class QP:
 
     Each step minimises |J dx + r|^2 + (damping |r|^2 + 1e-9) |dx|^2 + posture_weight |r|^2 |N (x + dx - posture)|^2
     with lower <= x + dx <= upper and |dx_i| <= largest, where N projects into the null space of J: the posture uses
-    what freedom the target leaves, and goes last. Whatever the solver answers is clipped into these bounds.
+    only the freedom that the target leaves. The solver's result is clipped to these bounds.
 
     Attributes:
         solver: ``"osqp"`` comes with this package; ``"daqp"`` (the quickest), ``"proxqp"``, ``"piqp"``, ``"quadprog"``
             and whatever else qpsolvers supports when it is installed.
-        damping: What the squared error is multiplied with, 1/m^2 or 1/rad^2.
+        damping: Factor of the squared error, 1/m^2 or 1/rad^2.
         largest: The most that any coordinate moves in one step, rad or m.
-        posture: Coordinates (n,) of the chain to be drawn to, rad or m; ``"middle"`` of the box to search in; or
-            ``None``. A pull on the way, not a second target: the descent ends where the target is met.
-        posture_weight: What a squared radian away from the posture counts, times the squared error, 1/rad^2. 0.02 costs
-            no evaluations; from 0.05 on some targets near limits are missed (200 on the Panda, weights 0.01 to 1).
+        posture: Coordinates (n,) of the chain that the steps are drawn towards, rad or m; ``"middle"`` of the search
+            box; or ``None``. It is not a second target: the descent ends as soon as the target is met.
+        posture_weight: Weight of the squared distance from the posture, relative to the squared error, 1/rad^2. 0.02
+            costs no evaluations; from 0.05 on some targets near limits are missed (200 on the Panda, weights 0.01 to
+            1).
         tolerance: Of iterative solvers, relative to the step.
         patience: When a start is given up.
     """

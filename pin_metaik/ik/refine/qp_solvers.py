@@ -1,4 +1,4 @@
-"""Other people's QP solvers behind one call: minimise z'P z / 2 + q'z in a box, and perhaps between rows.
+"""QP solvers of other packages behind one call: minimise z'P z / 2 + q'z in a box, and perhaps between rows.
 
 Every solver that qpsolvers finds installed will do. Two are called without it, because in a descent it is the programs'
 small size that counts: at seven joints DAQP takes 12 us instead of 42, and OSQP, kept set up, 0.1 ms instead of 1.2.

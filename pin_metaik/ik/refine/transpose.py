@@ -1,4 +1,4 @@
-"""Jacobian transpose steps: steepest descent with the step length that a linear robot would want."""
+"""Jacobian transpose steps: steepest descent with the step length that is optimal for the linearised robot."""
 
 from __future__ import annotations
 

@@ -73,17 +73,19 @@ class CurvePoint(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class SelfMotionCurve:
-    """All solutions that a chain with one spare degree of freedom reaches while its frame stands still.
+    """A curve of solutions of one target, for a chain with one spare degree of freedom.
 
-    A connected component of the self-motion manifold (Burdick 1989) inside the limits. Coordinates whose limits leave
-    room for a whole turn are taken as angles on a circle: they end no curve, and come as the copy nearest to ``q0``.
+    A connected component of the self-motion manifold (Burdick 1989) inside the limits. Coordinates whose range is a
+    whole turn or more are treated as angles on a circle: their limits do not end a curve, and they are given as the
+    copy nearest to ``q0``.
 
     Attributes:
-        problem: The target, to be met exactly.
-        base: (nq,) the joints that do not move, and what copies are nearest to.
-        x: (k, n) coordinates of points on the curve, in order; angles on a circle without jumps.
-        t: (k,) how far the joints have moved up to each: the sum of the distances between the points, rad and m alike.
-        ends: Of the beginning and of the end.
+        problem: The problem with the target, which is met exactly.
+        base: (nq,) configuration ``q0``: values of the joints that do not move, and where copies by whole turns are
+            nearest to.
+        x: (k, n) coordinates of points on the curve, in order; angles without jumps.
+        t: (k,) length of the curve up to each point: sum of the distances between points, rad and m weighted alike.
+        ends: Why the curve ends at its beginning and at its end.
     """
 
     problem: IKProblem = field(repr=False)
@@ -100,16 +102,16 @@ class SelfMotionCurve:
 
     @property
     def closed(self) -> bool:
-        """Whether it comes back to where it began."""
+        """Whether the curve is closed: it comes back to its first point."""
         return self.ends[0].reason is EndReason.CLOSED
 
     @property
     def length(self) -> float:
-        """How far the joints move from end to end, rad and m alike."""
+        """Length of the curve in joint space, rad and m weighted alike."""
         return float(self.t[-1])
 
     def q(self, t: ArrayLike) -> Array:
-        """Configurations (..., nq) at t (...), from 0 to ``length``; round and round on a closed curve.
+        """Configurations (..., nq) at t (...), from 0 to ``length``; on a closed curve t is taken modulo ``length``.
 
         Raises:
             InvalidSetting: If t is not finite.
@@ -129,19 +131,19 @@ class SelfMotionCurve:
 
     @checked
     def nearest(self, q: ArrayLike, weights: Mapping[str, float] | None = None) -> CurvePoint:
-        """The point with the least distance from a configuration (nq,), rad and m alike; angles the shorter way round.
+        """The point nearest to a configuration (nq,), rad and m weighted alike; angles the shorter way round.
 
-        It is the nearest of the whole curve, to 1e-4, as a distance changes by no more than the joints move; but where
-        limits cut off copies by whole turns, as ``best`` finds it.
+        It is the nearest of the whole curve to within 1e-4, because a distance changes by no more than the joints move.
+        Where limits exclude copies by whole turns it is found as in ``best``, without that guarantee.
 
         Args:
             q: The configuration.
-            weights: Of coordinates by name; see ``Weighted``.
+            weights: Weights of coordinates by name, default 1; see ``Weighted``.
 
         Raises:
             InvalidConfiguration: If ``q`` is not one.
-            UnknownName: A joint is none of the chain's.
-            InvalidSetting: A weight is below 0.
+            UnknownName: If the chain has no joint of such a name.
+            InvalidSetting: If a weight is below 0.
         """
         x = self.problem.chain.x(array("q", q, self.problem.chain.model.nq, error=InvalidConfiguration))
         near = Weighted("nearest", weights or {})
@@ -153,13 +155,13 @@ class SelfMotionCurve:
 
         Args:
             criterion: As for ``IKSolver.select``: a name, ``Weighted``, or a function of a configuration (nq,). For
-                ``"nearest"`` (to ``q0``) and ``"limits"`` it is the best of the whole curve, to 1e-4, where no joint
-                has finite limits that leave room for a whole turn; others are looked at in every point ``x``, and
-                between the neighbours of each that is better than these.
+                ``"nearest"`` (to ``q0``) and ``"limits"`` the result is the best of the whole curve to within 1e-4, if
+                no joint has finite limits a whole turn or more apart. Any other criterion is evaluated at every point
+                of ``x``, and minimised around each point that is better than its two neighbours.
 
         Raises:
             UnknownName: No criterion of that name.
-            InvalidSetting: The function takes no configuration, or gives no number.
+            InvalidSetting: The function fails for a configuration, or does not return a number.
         """
         measure = measure_of(criterion)
         if not isinstance(criterion, (str, Weighted)):
@@ -170,7 +172,7 @@ class SelfMotionCurve:
         return self._least(lambda X: measure(self.problem, self._turned(X), self._x0), self._rate(criterion))
 
     def free(self, world: CollisionWorld, step: float = 0.02) -> list[tuple[float, float]]:
-        """Intervals (from, to) of t without a collision, as far as points at most ``step`` apart show.
+        """Intervals (from, to) of t without a collision, sampled at points at most ``step`` (rad and m alike) apart.
 
         Raises:
             InvalidSetting: If the world is another model's, or the step is not above zero.

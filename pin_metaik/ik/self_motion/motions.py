@@ -1,4 +1,4 @@
-"""All self-motions of a target: every curve of solutions inside the limits, and what proves that none is missing."""
+"""All self-motions of a target: every curve of solutions inside the limits, and the proof that none is missing."""
 
 from __future__ import annotations
 
@@ -47,12 +47,12 @@ class SelfMotions:
     """The self-motions of a chain with one spare degree of freedom for one target.
 
     Attributes:
-        curves: The longest first.
+        curves: The curves, the longest first.
         complete: ``Proof.BOXES``: every solution inside the limits is within ``resolution`` of a point of one of the
-            curves, in every coordinate but those of a wrist whose axes meet, and with that wrist bent to the same side
-            or nearly straight (a triple product of its axes below 0.01). So a curve is missing only if it stays that
-            near to others. ``None``: nothing is proved.
-        resolution: rad or m.
+            curves, so that a missing curve would be that close to these all along. Of a spherical wrist not its three
+            coordinates are compared but only the side to which it is bent, unless it is nearly straight (triple product
+            of its axes below 0.01). ``None``: nothing is proved.
+        resolution: rad or m; see ``complete``.
         evaluations: Forward kinematics computed, and boxes looked at.
         seconds: Time taken, s.
         interrupted: Whether a watch ended the search.
@@ -115,16 +115,16 @@ def self_motions(
 ) -> SelfMotions:
     """Find every curve of solutions of a target that leaves a chain one spare degree of freedom.
 
-    Boxes of configurations that are not excluded cover all solutions. A descent from each that no known curve comes
-    near leads to a point of another curve, which is followed both ways to its ends.
+    Boxes of configurations that cannot be excluded cover all solutions. From each box that no known curve comes near, a
+    descent leads to a point of another curve, which is followed in both directions to its ends.
 
     Args:
         chain: The joints to move and the frame to place.
-        target: As for ``solve_ik``, with one axis less that counts than the chain has coordinates. Curves keep to
-            the middle of its tolerances.
-        q0: (nq,) configuration that has the joints outside the chain and the locked ones, and that copies by whole
-            turns are nearest to; default: the chain's reference.
-        resolution: rad or m; how near to known curves one that is missing must stay.
+        target: As for ``solve_ik``; it must constrain one axis less than the chain has coordinates. The curves meet the
+            middle of its tolerances.
+        q0: (nq,) configuration that gives the values of joints outside the chain and of locked ones, and to which
+            copies by whole turns are nearest; default: the chain's reference.
+        resolution: rad or m; how close to the curves found a missing one would have to be (``SelfMotions.complete``).
         budget: Evaluations that may be spent, and seconds.
         watch: Called between boxes with evaluations spent and allowed; True ends the search.
 
@@ -193,8 +193,8 @@ class _Search:
     def run(self) -> None:
         """Cover the limits with boxes, and find the curves that go through those that are kept.
 
-        Where there is no end of boxes, curves are found from an atlas and at random; where there is, by some descents at
-        random beside, as those that stay near to others may be missing.
+        Where the boxes do not come to an end, curves are found from an atlas and at random; where they do, some random
+        descents are made as well, because curves that stay near to others may be missing.
         """
         target, chain = self._problem.targets[0], self._problem.chain
         free = not target.counts[3], not target.counts[4], not target.counts[5]

@@ -55,7 +55,7 @@ def cos_sin(x: float) -> tuple[float, float]:
     return c, s
 
 
-@shared
+@inline
 def forward(
     joints: Floats,
     wiring: Ints,

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, exact, inline, jit, shared
+from pin_metaik.compiled import Floats, Ints, exact, inline, jit
 from pin_metaik.kinematics.kernel.forward import copy, forward, sizes_of, unpack
 from pin_metaik.kinematics.kernel.layout import (
     ALIGNED,
@@ -31,7 +31,7 @@ from pin_metaik.kinematics.kernel.layout import (
 from pin_metaik.kinematics.kernel.scratch import Scratch, scratch_for
 
 
-@shared
+@inline
 def pose_error(pose: Floats, error: Floats) -> None:
     """Translation and rotation vector (6,) of a pose; exact near 0 and, through the symmetric part, near pi."""
     error[0], error[1], error[2] = pose[9], pose[10], pose[11]
@@ -71,7 +71,7 @@ def residual(goal: Floats, error: Floats, r: Floats) -> tuple[float, float]:
     return position, orientation
 
 
-@shared
+@inline
 def beyond_ball(goal: Floats, error: Floats, part: int, r: Floats, J: Floats) -> float:
     """Weighted position (part 0) or orientation (part 3) beyond its ball, into r (6,); returns its size, squared.
 
@@ -93,7 +93,7 @@ def beyond_ball(goal: Floats, error: Floats, part: int, r: Floats, J: Floats) ->
     return float(outside * outside)
 
 
-@shared
+@inline
 def jacobian(
     joints: Floats,
     wiring: Ints,
@@ -186,7 +186,7 @@ def evaluate_with(arm: Arm, goals: Floats, rows: Ints, x: Floats, work: Scratch,
     return square, solved
 
 
-@shared
+@inline
 def evaluate_balls(arm: Arm, goals: Floats, rows: Ints, x: Floats, work: Scratch) -> tuple[float, bool]:
     """``evaluate`` where a tolerance is aimed at as a ball."""
     return evaluate_with(arm, goals, rows, x, work, True)

@@ -25,11 +25,14 @@ from pin_metaik.kinematics.roots.complex_arm import (
     reciprocal,
     solve_twists,
 )
+from pin_metaik.kinematics.roots.real import UNBOUNDED
 
 STEADY = 1e-2  # rad or lengths: a step along a path that Newton's method corrects by more is taken shorter
 ON_PATH, EXACT = 1e-6, 1e-12  # last correction on the way, and at its end
 FIRST, SHORTEST = 0.05, 1e-7  # steps in s; one shorter ends a path in a singularity, or at infinity
 STEPS = 400
+STAGES, LAST = 4, 6  # evaluations of a step, and at most to correct the last one
+STEP = STAGES + LAST
 
 
 class PathScratch(NamedTuple):
@@ -132,9 +135,11 @@ def rate(arm: ComplexArm, x: Complexes, twist: Complexes, out: Complexes, work: 
 
 @shared
 def follow(
-    arm: ComplexArm, start: Complexes, x: Complexes, path: PathScratch, work: ComplexScratch
+    arm: ComplexArm, start: Complexes, x: Complexes, path: PathScratch, most: int, work: ComplexScratch
 ) -> tuple[float, int]:
     """Follow x (6,) in place from the pose ``start`` (12,) along the path's twist, as far as it leads.
+
+    It ends early where another step might take more than ``most`` evaluations in all.
 
     Returns s there, which is 1 at the end, and evaluations. Steps are those of Runge and Kutta, each put back onto the
     path by Newton's method.
@@ -142,6 +147,8 @@ def follow(
     twist, target, trial, slopes = path.twist, path.target, path.trial, path.slopes
     s, h, spent = 0.0, FIRST, 0
     for _ in range(STEPS):
+        if spent + STEP > most:
+            break
         last_step = h >= 1.0 - s
         h = 1.0 - s if last_step else h
         regular = rate(arm, x, twist, slopes[0], work)
@@ -150,13 +157,15 @@ def follow(
             for c in range(6):
                 trial[c] = x[c] + share * slopes[stage - 1, c]
             regular = regular and rate(arm, trial, twist, slopes[stage], work)
-        spent += 4
+        spent += STAGES
         first = last = math.inf
         if regular:
             for c in range(6):
                 trial[c] = x[c] + h / 6.0 * (slopes[0, c] + 2.0 * slopes[1, c] + 2.0 * slopes[2, c] + slopes[3, c])
             screwed(twist, s + h, start, target)
-            first, last, more = newton(arm, target, trial, 6 if last_step else 3, EXACT if last_step else ON_PATH, work)
+            first, last, more = newton(
+                arm, target, trial, LAST if last_step else 3, EXACT if last_step else ON_PATH, work
+            )
             spent += more
         if first < STEADY and last < ON_PATH:
             for c in range(6):
@@ -180,13 +189,14 @@ def follow_each(
     points: Complexes,
     arrived: Ints,
     path: PathScratch,
+    most: int,
     work: ComplexScratch,
 ) -> int:
-    """``follow_all`` in room that was made for it."""
+    """``follow_all`` in room that was made for it, within ``most`` evaluations."""
     spent = 0
     screw_between(start, end, path.twist)
     for k in range(points.shape[0]):
-        s, more = follow(arm, start, points[k], path, work)
+        s, more = follow(arm, start, points[k], path, most - spent, work)
         arrived[k] = 1 if s == 1.0 else 0
         spent += more
     return spent
@@ -208,4 +218,4 @@ def follow_all(
     Returns the evaluations.
     """
     arm = ComplexArm(joints, wiring, tip, periodic)
-    return follow_each(arm, start, end, points, arrived, path_scratch(), complex_scratch())
+    return follow_each(arm, start, end, points, arrived, path_scratch(), UNBOUNDED, complex_scratch())

@@ -5,3 +5,4 @@ from __future__ import annotations
 REAL = 1e-7  # imaginary part that is rounding
 NEARLY = 0.05  # imaginary part of what may be real where rounding, or a tolerance, makes two of one
 BEYOND = 1e-3  # rad or m outside a limit, from where a descent may still end inside
+UNBOUNDED = 2**62  # evaluations

@@ -124,10 +124,14 @@ def by_paths(
     found: int,
     near: int,
     path: PathScratch,
+    most: int,
     work: ComplexScratch,
 ) -> tuple[int, int, int]:
-    """The same for the ends of paths from the pose ``start``, where ``ends`` (k, 6) are; they are moved."""
-    spent = follow_each(arm, start, roots.target, ends, arrived, path, work)
+    """The same for the ends of paths from the pose ``start``, where ``ends`` (k, 6) are; they are moved.
+
+    Paths end early where they take more than ``most`` evaluations together.
+    """
+    spent = follow_each(arm, start, roots.target, ends, arrived, path, most, work)
     x = roots.x
     for k in range(ends.shape[0]):
         for c in range(6):
@@ -141,7 +145,7 @@ def by_paths(
 
 @jit(
     "UniTuple(i8, 3)(f8[:,::1], i8[:,::1], f8[::1], i8[::1], f8[::1], i8[::1], c16[:,::1], c16[:,:,::1], i8,"
-    " c16[:,::1], c16[:,::1])"
+    " i8, c16[:,::1], c16[:,::1])"
 )
 def find_roots(
     joints: Floats,
@@ -153,6 +157,7 @@ def find_roots(
     starts: Complexes,
     known: Complexes,
     degree: int,
+    most: int,
     points: Complexes,
     nearly: Complexes,
 ) -> tuple[int, int, int]:
@@ -168,6 +173,7 @@ def find_roots(
         starts: (w, 12) poses to follow paths from after that, until all are found.
         known: (w, k, 6) their roots, as far as known.
         degree: How many there can be; the search ends with so many.
+        most: Evaluations that it may take.
         points: (m, 6) gets the roots.
         nearly: (m, 6) gets what may be a double root, or one of a curve, and is nearly real.
 
@@ -179,13 +185,15 @@ def find_roots(
     ends, arrived = np.empty(known.shape[1:], np.complex128), np.empty(known.shape[1], np.int64)
     found = near = spent = 0
     for number in loops:
+        if spent + ROOTS * STEPS > most:
+            return found, near, spent
         found, near, more = by_loop(arm, target, number, roots, found, near, loop, work)
         spent += more
         if found >= degree:
             return found, near, spent
     for w in range(starts.shape[0]):
         ends[:] = known[w]
-        found, near, more = by_paths(arm, starts[w], ends, arrived, roots, found, near, path, work)
+        found, near, more = by_paths(arm, starts[w], ends, arrived, roots, found, near, path, most - spent, work)
         spent += more
         if found >= degree:
             break

@@ -15,7 +15,7 @@ from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE, SHIFT
 from pin_metaik.kinematics.limits import Limits
 from pin_metaik.kinematics.paths import ChainArrays
 from pin_metaik.kinematics.proofs.closed_forms import Place
-from pin_metaik.kinematics.roots.real import BEYOND, NEARLY, REAL
+from pin_metaik.kinematics.roots.real import BEYOND, NEARLY, REAL, UNBOUNDED
 
 Complexes: TypeAlias = NDArray[np.complex128]
 Ints: TypeAlias = NDArray[np.int64]
@@ -109,8 +109,8 @@ class SixJoints:
     known: Complexes
     loops: Ints
 
-    def at(self, pose: Array) -> Configurations:
-        """All configurations for a world pose (4, 4) of the tip."""
+    def at(self, pose: Array, most: int = UNBOUNDED) -> Configurations:
+        """All configurations for a world pose (4, 4) of the tip; those that ``most`` evaluations find."""
         from pin_metaik.kinematics.proofs.targets import exact_pose
         from pin_metaik.kinematics.roots.counting import simple_roots
         from pin_metaik.kinematics.roots.search import find_roots
@@ -120,7 +120,7 @@ class SixJoints:
         target[9:] /= self.length
         points, nearly = np.empty((2, MOST, SIX), np.complex128)
         found, near, spent = find_roots(
-            *self.arm, target, self.loops, self.poses, self.known, self.degree, points, nearly
+            *self.arm, target, self.loops, self.poses, self.known, self.degree, most, points, nearly
         )
         proved = found == self.bound and simple_roots(*self.arm, target, points[:found]) == self.bound
         return Configurations(points[:found], nearly[:near], found >= self.degree, proved, spent)
@@ -272,7 +272,7 @@ def _by_elimination(
     for pose in poses:
         there = []
         for number in range(LOOPS):
-            count, *_ = find_roots(*arm, pose.real.copy(), np.array([number]), *none, MOST, *room)
+            count, *_ = find_roots(*arm, pose.real.copy(), np.array([number]), *none, MOST, UNBOUNDED, *room)
             found[number] += count / len(poses)
             there.append(room[0, :count].copy())
         points = _distinct(arm, np.concatenate(there))

@@ -1,4 +1,4 @@
-"""Levenberg-Marquardt by MINPACK, through scipy: a control of our own."""
+"""Levenberg-Marquardt by MINPACK, through scipy: a control for our own."""
 
 from __future__ import annotations
 

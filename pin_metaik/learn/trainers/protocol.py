@@ -80,8 +80,8 @@ class Training:
     Attributes:
         w: Best weights found (count,).
         mse: Their mean squared error on the scaled data.
-        iterations: Made.
-        seconds: Taken, s.
+        iterations: Iterations made.
+        seconds: Time taken, s.
         converged: Whether the trainer ended by itself, before its iterations were spent.
         interrupted: Whether Ctrl-C or a watch ended it.
         trace: Error after every iteration (i,).
@@ -102,15 +102,15 @@ class Training:
 
 @runtime_checkable
 class Trainer(Protocol):
-    """Anything that improves weights step by step; its settings are fields of a frozen dataclass."""
+    """A method that improves weights step by step; its settings are fields of a frozen dataclass."""
 
     def run(self, task: TrainingTask, w: Array, record: Record, iterations: int) -> None:
-        """Improve the weights w (count,), telling the record after every iteration; return when nothing is gained.
+        """Improve the weights w (count,), reporting to ``record`` after every iteration; return when nothing improves.
 
         Args:
             task: What to fit.
             w: Where to begin.
-            record: Told after every iteration; it ends the training when the iterations are spent.
-            iterations: How many those are, for trainers that must know beforehand.
+            record: Called after every iteration; it ends the training when the iterations are spent.
+            iterations: Largest number of iterations, for trainers that must know it beforehand.
         """
         ...

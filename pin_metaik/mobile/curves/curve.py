@@ -29,9 +29,9 @@ class Curve:
 
     Attributes:
         start: Pose (x, y, heading) in m and rad.
-        radius: Of the arcs, m.
+        radius: Radius of the arcs, m.
         word: Kinds of the pieces, e.g. ``"LSR"``.
-        lengths: How long they are, m; below zero backwards.
+        lengths: Lengths of the pieces, m; negative if driven backwards.
 
     Raises:
         InvalidSetting: A radius that is not above zero, or lengths that do not fit the word.
@@ -52,7 +52,7 @@ class Curve:
 
     @property
     def length(self) -> float:
-        """Of the whole, m, whichever way it is driven."""
+        """Length of the curve, m, whichever way it is driven."""
         return float(np.abs(self.lengths).sum())
 
     @property
@@ -74,7 +74,7 @@ class Curve:
 
     @checked
     def poses(self, s: ArrayLike) -> Array:
-        """Poses (n, 3) at places s (n,) along the curve, in m; x, y in m and the heading in rad."""
+        """Poses (n, 3) at arc lengths s (n,), in m; x, y in m and the heading in rad."""
         places = np.clip(np.atleast_1d(array("s", s, "...")).ravel(), 0.0, self.length)
         if not self.word:
             return np.tile(self.start, (len(places), 1))
@@ -85,22 +85,24 @@ class Curve:
 
     @checked
     def moved(self, a: Array, b: Array) -> Moved:
-        """How far all between places a and b (n,), in m, is at most from the middle of the two."""
+        """Bound (n,), m, on how far positions between arc lengths a and b (n,) are from the one in the middle."""
         a = array("a", a, "n")
         half = (array("b", b, len(a)) - a) / 2
         return Moved(half, half / self.radius)
 
     @checked
     def write(self, file: str | File, step: float = STEP) -> None:
-        """Write s, x, y and heading as CSV, every so many m and where pieces begin."""
+        """Write s, x, y and heading as CSV, at equal distances (m) and where pieces begin."""
         s = self.places(step)
         write_table(file, ("s", "x", "y", "heading"), np.column_stack((s, self.poses(s))))
 
     @checked
     def places(self, step: float = STEP) -> Array:
-        """Places (n,) along the curve, in m: every so many m, and where pieces begin and end."""
+        """Arc lengths (n,), in m, at equal distances and where pieces begin and end."""
         if not step > 0 or self.length > MANY * step:
-            raise InvalidSetting(f"step is above 0 m and not a {MANY:,}th of {self.length:g} m, got {step!r}")
+            raise InvalidSetting(
+                f"step is above 0 m and makes at most {MANY:,} places on {self.length:g} m, got {step!r}"
+            )
         return np.union1d(np.arange(0.0, self.length, step), self.boundaries)
 
     @cached_property

@@ -34,8 +34,9 @@ class Footprint:
     """A vehicle's outline: a convex polygon in its own frame, x ahead, perhaps with a distance around it.
 
     Attributes:
-        corners: (m, 2) in m, from the point that paths are of, e.g. the middle of the rear axle; one is a point.
-        around: What belongs to it around the polygon, m; a point with a radius is a disc.
+        corners: (m, 2) in m, relative to the vehicle's reference point, e.g. the middle of the rear axle; one corner is
+            a point.
+        around: Distance by which the outline is larger than the polygon, m; a single point with it is a disc.
 
     Raises:
         InvalidGeometry: The corners are not (m, 2) finite numbers.
@@ -61,7 +62,7 @@ class Footprint:
         Args:
             length: m.
             width: m.
-            behind: How much of the length is behind the point that paths are of, m; default: half.
+            behind: How much of the length is behind the reference point, m; default: half.
         """
         within("length", length, 0)
         within("width", width, 0)
@@ -71,17 +72,17 @@ class Footprint:
     @staticmethod
     @checked
     def disc(radius: float) -> Footprint:
-        """A disc around the point that paths are of, with a radius in m."""
+        """A disc around the reference point, with a radius in m."""
         return Footprint(np.zeros((1, 2)), radius)
 
     @property
     def reach(self) -> float:
-        """Largest distance, m, of a corner from the point that paths are of."""
+        """Largest distance, m, of a corner from the reference point."""
         return float(np.hypot(*self.corners.T).max())
 
     @checked
     def at(self, poses: Array) -> np.ndarray:
-        """The polygon without its clearance, at poses (n, 3): shapely geometries (n,)."""
+        """The polygon (without ``around``) at poses (n, 3): shapely geometries (n,)."""
         x, y, heading = array("poses", poses, "n", 3).T
         turned = (self.corners @ [1, 1j]) * np.exp(1j * heading)[:, None]
         placed = np.stack((x[:, None] + turned.real, y[:, None] + turned.imag), axis=-1)
@@ -98,7 +99,7 @@ class Contact:
     """The first place where a footprint meets an obstacle.
 
     Attributes:
-        s: Where: along a curve, m; in a trajectory, s.
+        s: Arc length along a curve, m, or time in a trajectory, s.
         pose: (x, y, heading) there, m and rad.
         point: The obstacle's nearest point (x, y), m.
         obstacle: Its number in the list of obstacles.
@@ -112,20 +113,21 @@ class Contact:
 
 @checked
 def first_contact(motion: Motion, footprint: Footprint, obstacles: Any, tolerance: float = TOLERANCE) -> Contact | None:
-    """The first contact of a moving footprint with an obstacle; None: proved free of contact.
+    """The first contact of a moving footprint with an obstacle; None: proved free of contact, up to rounding.
 
-    That is so but for the rounding of doubles, which is far below the tolerance.
+    The rounding errors are far below the tolerance.
 
     Args:
         motion: A ``Curve`` or a ``Trajectory``.
         footprint: The vehicle's outline.
         obstacles: Polygons, lines and points: anything ``read_obstacles`` takes.
-        tolerance: In m, above 0: what comes nearer may be called a contact; before the place that is told everything
-            is free but for the last stretch, in which no point of the outline moves farther than this.
+        tolerance: In m, above 0: an obstacle that comes nearer than this may be reported as a contact. Before the
+            contact reported everything is free, except possibly in a last interval in which no point of the outline
+            moves farther than this.
 
     Raises:
         InvalidSetting: A tolerance that is not above zero.
-        InvalidGeometry: An obstacle is no geometry.
+        InvalidGeometry: An obstacle is not a geometry.
     """
     within("tolerance", tolerance, np.finfo(float).tiny)
     solid = read_obstacles(obstacles)

@@ -15,16 +15,16 @@ PIECES = 5  # of the longest word
 
 @checked
 def shortest_curve(start: Pose, goal: Pose, turning_radius: float, *, reverse: bool = False) -> Curve:
-    """The shortest curve from pose to pose with at least the given radius, in a plane without obstacles.
+    """The shortest curve between two poses with at least the given turning radius, in a plane without obstacles.
 
-    It ends at the goal to about 1e-9, in m and rad, which is how near to none an arc counts as none.
+    It ends at the goal to about 1e-9 m and rad: arcs shorter than that are left out.
 
     Args:
         start: (x, y, heading) in m and rad.
         goal: (x, y, heading).
         turning_radius: Least radius of the vehicle, m.
-        reverse: Whether it may drive backwards, too: the shortest of Reeds and Shepp's 48 words instead of the shortest
-            of Dubins' six.
+        reverse: Whether it may also drive backwards: the shortest of the 48 words of Reeds and Shepp (1990) instead of
+            the six of Dubins (1957).
 
     Raises:
         InvalidSetting: A malformed pose, or a radius not above zero.

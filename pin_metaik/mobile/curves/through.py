@@ -35,25 +35,25 @@ def curve_through(
     goal_heading: float | None = None,
     reverse: bool = False,
 ) -> Curve:
-    """A short curve through the points of a path with at least the given radius, clear of obstacles.
+    """A short curve through the points of a path, with at least the given turning radius and clear of obstacles.
 
-    Between neighbouring points it is the shortest there is for its headings there. The headings are the best of a grid,
-    by dynamic programming, and then of finer ones around them: short, not proven the shortest. Pieces that meet an
-    obstacle are left out, so that headings are found that go round it, if any of the grid do.
+    Between neighbouring points it is the shortest curve for its headings there. The headings are the best of a grid, by
+    dynamic programming, then of finer grids around them; so the whole is short, but not proved the shortest. Pieces
+    that meet an obstacle are excluded, so that headings that lead around it are found, if the grid has any.
 
     Args:
-        path: A polyline, or its points (n, 2) in m, all of which the curve goes through.
+        path: A polyline, or its points (n, 2) in m; the curve goes through all of them.
         turning_radius: Least radius of the vehicle, m.
         obstacles: Polygons, lines and points, not grown: anything ``read_obstacles`` takes.
-        footprint: The vehicle's outline, kept clear of obstacles for certain; default: a point.
-        start_heading: rad; default: whichever is best.
-        goal_heading: rad; default: whichever is best.
-        reverse: Whether the vehicle may drive backwards, too.
+        footprint: The vehicle's outline, which is proved clear of obstacles; default: a point.
+        start_heading: rad; default: the best one.
+        goal_heading: rad; default: the best one.
+        reverse: Whether the vehicle may also drive backwards.
 
     Raises:
         InvalidSetting: A radius that is not above zero.
         InvalidGeometry: A malformed path or obstacle.
-        Obstructed: Every curve that was tried meets an obstacle; a ``Blocked`` that says where the best one does.
+        Obstructed: Every curve tried meets an obstacle; the error says where the best one does.
     """
     turning(turning_radius)
     if not isinstance(path, Path):

@@ -28,18 +28,18 @@ def fastest_trajectory(
 ) -> TrajectoryPlan:
     """The quickest trajectory over the shortest paths of the best homotopy classes, for each of several margins.
 
-    A wider margin makes the path longer and its curves quicker; neither is best everywhere, so all are tried.
+    A wider margin makes the path longer but its curves faster; none is best everywhere, so all are tried.
 
     Args:
         scene: The world, start and goal, in m.
         vehicle: The robot.
         paths: How many homotopy classes to try, for each margin.
-        margins: Distances, in m, that paths keep on top of the robot's radius. Margins without a path are skipped.
-        join: How grown obstacles end at their corners; see ``PathProblem.of``.
+        margins: Distances, in m, that paths keep in addition to the robot's radius. Margins without a path are skipped.
+        join: How corners of grown obstacles are joined; see ``PathProblem.of``.
 
     Raises:
         Blocked: The robot cannot be at the start or the goal with any of the margins.
-        NoPath: There is no way with any of the margins.
+        NoPath: There is no path with any of the margins.
         InvalidSetting: No margins at all.
     """
     best: TrajectoryPlan | None = None

@@ -1,4 +1,4 @@
-"""The turn as a network learns it: tangent lengths for a speed and an angle, and what their errors cost.
+"""Turns learned by a network: tangent lengths for a speed and an angle, and the effect of their errors.
 
 The closed form needs none of this: the tangent length is the speed times a function of the angle. It is here because a
 paper planned with it, and because it shows what a network's error of a few millimetres does to a robot.
@@ -80,7 +80,7 @@ class LearnedTurn:
 
     Attributes:
         vehicle: The robot it was learned for.
-        design: Its input and output transformations.
+        design: Name of its input and output transformations.
         regressor: The network.
         angles: Smallest and largest angle it was trained with, rad.
         speeds: Smallest and largest speed, m/s.
@@ -146,7 +146,7 @@ class LearnedTurn:
         return LearnedCorners(self, theta, known, lead_time(theta, self.vehicle))
 
     def errors(self) -> TurnErrors:
-        """Its errors over the paper's test set, from 1 degree on."""
+        """Its errors over the paper's test set, for angles from 1 degree on."""
         points = judging_points(self.vehicle)
         true = points[:, 0] * lead_time(points[:, 1], self.vehicle)
         return turn_errors(self._predict(points[:, 0], points[:, 1]), true)
@@ -230,18 +230,20 @@ def learn_turn(
     rng: int | np.random.Generator | None = 0,
     watch: Watch | None = None,
 ) -> LearnedTurn:
-    """Train a network on exact tangent lengths.
+    """Train a network on exact tangent lengths of turns.
 
     Args:
         vehicle: The robot.
-        design: ``log`` (logarithms of speed and length, square root of the angle) or ``paper`` (the bare numbers).
+        design: ``log`` (logarithms of speed and length, square root of the angle) or ``paper`` (no transformation).
         hidden: Neurons of each hidden layer.
         trainer: By name or as an object.
-        iterations: At most. Plans end millimetres off the goal after 300, tenths of one after 4,000.
+        iterations: Largest number of iterations. After 300, plans miss the goal by millimetres; after 4,000, by tenths
+            of a millimetre.
         points: Speeds and angles (n, 2) in m/s and rad to learn from; default: the paper's grid. ``log`` leaves out
-            angles below half a degree, whose logarithms run away.
+            angles below half a degree, as their logarithms diverge.
         rng: Seed or generator of the first weights; ``None`` is a fixed seed.
-        watch: Called after every iteration with their number and the error; True ends it.
+        watch: Called after every iteration with the number of iterations and the error; returning True ends the
+            training.
 
     Raises:
         UnknownName: No such design or trainer.
@@ -265,7 +267,7 @@ def load_turn(file: str | Path) -> LearnedTurn:
     """A network that ``LearnedTurn.save`` wrote, with the robot that it was learned for.
 
     Raises:
-        InvalidSetting: The file is missing, or is none of these.
+        InvalidSetting: The file is missing, or does not hold such a network.
     """
     arrays = read_arrays(Path(file), InvalidSetting, "a saved turn")
     if missing := [key for key in ("robot", "limits", "design", "range") if key not in arrays]:

@@ -45,23 +45,24 @@ def plan_in_motion(
     goal: State | None = None,
     radius: float | None = None,
 ) -> TrajectoryPlan:
-    """Plan a motion along a polyline from a state, with its heading, speed and turning rate, to another.
+    """Plan a motion along a polyline from one state (with heading, speed and turning rate) to another.
 
-    The robot goes on from the state without a jump: perhaps straight to another speed, then turning at that speed until
-    it heads for the first corner; the same at the goal, seen from behind. Several such speeds are tried, those in the
-    corners between are the best there are, and the quickest motion that keeps the radius is taken. If none keeps it the
-    quickest of all is, and says that it is no success.
+    The robot continues from the state without a jump: if needed straight on to another speed, then turning at that
+    speed until it heads for the first corner; the same in reverse at the goal. Several such speeds are tried; the
+    speeds at the corners between are optimal for them; and the quickest motion that keeps the radius is returned. If
+    none keeps it, the quickest of all is returned, with ``success`` False.
 
     Args:
-        path: A polyline, or its points (n, 2) in m; its corners count, start and goal are those of the states.
+        path: A polyline, or its points (n, 2) in m; only its corners are used, as start and goal are those of the
+            states.
         vehicle: The robot and its limits.
         obstacles: Polygons, lines and points, not grown: anything ``read_obstacles`` takes.
         start: The state it begins in.
-        goal: Pose and speed it is to have at the end; default: at rest at the end of the path, however it heads.
+        goal: Pose and speed at the end; default: at rest at the end of the path, with any heading.
         radius: Distance of the robot's centre from obstacles, in m; default: the robot's radius.
 
     Raises:
-        InvalidSetting: A state beyond the robot's limits, or one at the goal that turns; a radius below zero.
+        InvalidSetting: A state beyond the robot's limits, a goal state with a turning rate, or a radius below zero.
         InvalidGeometry: A malformed path or obstacle.
         NoRoom: No motion of this form leads from the state onto the path.
     """
@@ -71,7 +72,7 @@ def plan_in_motion(
     if goal is not None:
         _within_limits("goal", goal, vehicle)
         if goal.omega:
-            raise InvalidSetting(f"goal: it does not turn at the end, got omega = {goal.omega!r}")
+            raise InvalidSetting(f"goal: the turning rate at the end is 0, got omega = {goal.omega!r}")
     solid = read_obstacles(obstacles)
     if not isinstance(path, Path):
         path = Path(array("path", path, "n", 2, error=InvalidGeometry))
@@ -92,26 +93,26 @@ def replan(
     paths: int = 3,
     join: Join | None = None,
 ) -> TrajectoryPlan:
-    """Plan again from a state in motion to the scene's goal, or to another, in a world that may have changed.
+    """Plan again from a state in motion to the scene's goal, or to another one, in a scene that may have changed.
 
-    Paths are planned from where the robot is, and from where it would stand if it braked; of all of them the quickest
-    motion that keeps the robot's radius is taken. Where the margin is used up, as in a curve it is, the path begins at
-    the nearest place that has it.
+    Paths are planned from where the robot is, and from where it would stop if it braked; of all of them the quickest
+    motion that keeps the robot's radius is returned. Where the robot is nearer to an obstacle than the margin, as it
+    may be in a curve, the path begins at the nearest position that has the margin.
 
     Args:
-        scene: The world; its start does not matter.
+        scene: The scene; its start is not used.
         vehicle: The robot and its limits.
-        start: The state it is in, e.g. ``plan.trajectory.state(t)``.
-        goal: Pose and speed at the end; default: at rest at the scene's goal, however it heads.
-        margin: Distance, in m, that paths keep on top of the robot's radius.
-        paths: How many homotopy classes to try from each of the two places.
-        join: How grown obstacles end at their corners; see ``PathProblem.of``.
+        start: The present state, e.g. ``plan.trajectory.state(t)``.
+        goal: Pose and speed at the end; default: at rest at the scene's goal, with any heading.
+        margin: Distance, in m, that paths keep in addition to the robot's radius.
+        paths: How many homotopy classes to try from each of the two positions.
+        join: How corners of grown obstacles are joined; see ``PathProblem.of``.
 
     Raises:
-        InvalidSetting: A state beyond the robot's limits, or one at the goal that turns; a margin below zero.
+        InvalidSetting: A state beyond the robot's limits, a goal state with a turning rate, or a margin below zero.
         Blocked: The robot cannot be at the goal.
-        NoPath: There is no way.
-        NoRoom: Nothing that was tried keeps clear of the obstacles, e.g. as it cannot stop in time.
+        NoPath: There is no path.
+        NoRoom: None of the motions tried keeps clear of the obstacles, e.g. because the robot cannot stop in time.
     """
     few("paths", paths)
     within("margin", margin, 0)

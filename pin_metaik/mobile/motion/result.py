@@ -32,19 +32,19 @@ class TrajectoryPlan:
     """A trajectory along a path, with its clearance, its errors and remarks.
 
     Attributes:
-        trajectory: The motion, as the robot would execute it.
+        trajectory: The motion.
         route: The path with its turns and the speeds that its corners allow.
         v: Speed in each corner (n,), m/s; 0 is stop and turn.
         method: ``dp``, ``de`` or ``ann``.
         obstacles: Obstacles that it has to keep clear of.
         radius: Distance to keep, m.
-        evaluations: Times computed in the search for the speeds.
-        seconds: Time taken for planning, s; without learning.
-        seed: Of every random choice; None if a generator was handed in.
+        evaluations: Durations computed in the search for the speeds.
+        seconds: Time taken for planning, s, without the training of a network.
+        seed: Seed of every random choice; None if a generator was given.
         interrupted: Whether the search was stopped.
         learned: Effects of the network's errors, if one was used.
-        goal: Where it is to end (x, y), m.
-        joining: Time, s, of what leads from a state in motion onto the route, and off it to the state at the goal.
+        goal: Goal (x, y), m.
+        joining: Time, s, of the parts that lead from the start state onto the route and from it to the goal state.
     """
 
     trajectory: Trajectory
@@ -68,7 +68,7 @@ class TrajectoryPlan:
 
     @property
     def stop_and_turn(self) -> float:
-        """Duration, s, with a stop at every corner: always feasible from rest to rest; inf where a speed forbids it."""
+        """Duration, s, with a stop at every corner: always feasible from rest to rest; inf if a speed forbids it."""
         return self.joining + self.route.stop_and_turn
 
     @property
@@ -100,7 +100,7 @@ class TrajectoryPlan:
 
     @property
     def success(self) -> bool:
-        """Whether it keeps the radius and gets to the goal; with a network, within a centimetre."""
+        """Whether it keeps the radius and reaches the goal; with a network, to within a centimetre."""
         return self.collision_free and self.end_error <= (ARRIVED if self.learned is None else ARRIVED_LEARNED)
 
     def __bool__(self) -> bool:

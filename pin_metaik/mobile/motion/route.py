@@ -1,4 +1,4 @@
-"""A path as the planner of speeds sees it: a chain of lengths and turns, each corner with the speed it allows."""
+"""A path for the planner of speeds: lengths and turns, and for each corner the largest speed."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ class Route:
     """Straights s_0 ... s_n with turns theta_1 ... theta_n between them.
 
     Attributes:
-        path: The polyline, without corners that are none.
+        path: The polyline, without points on straight lines.
         vehicle: The robot.
-        turns: Angle at each corner (n,) in rad, to the left above zero.
-        g: Tangent length per speed at each corner (n,), in s; of a differential drive that of slow turns.
-        caps: Largest speed at each corner (n,) in m/s; 0 where there is no room but to stop and turn.
+        turns: Angle at each corner (n,) in rad, positive to the left.
+        g: Tangent length per speed at each corner (n,), in s; for a differential drive, in the limit of slow turns.
+        caps: Largest speed at each corner (n,) in m/s; 0 where the robot must stop and turn on the spot.
         ends: Speeds at the start and at the goal, m/s.
     """
 
@@ -58,8 +58,9 @@ class Route:
     ) -> Route:
         """The route along a path.
 
-        A corner's cap is the smallest of: the robot's largest speed; what the straights beside it have room for; the
-        speed below which everything between corner and curve keeps the radius from the obstacles.
+        A corner's cap is the smallest of: the robot's largest speed; the speed at which the tangents fit into the
+        adjacent straights; the speed up to which the whole area between corner and curve keeps the radius from the
+        obstacles.
 
         Args:
             path: A polyline that is free itself, with the robot's radius.
@@ -104,7 +105,7 @@ class Route:
 
     @checked
     def tangents(self, V: Array) -> Array:
-        """Tangent lengths (k, n), m, at speeds V (k, n): so long before a corner its turn begins."""
+        """Tangent lengths (k, n), m, at speeds V (k, n): the distance before a corner at which its turn begins."""
         V = self._speeds(V)
         return V * (lead_time(np.abs(self.turns), self.vehicle, V) if self.vehicle.coupled else self.g)
 
@@ -114,7 +115,7 @@ class Route:
         return turn_time(self.turns, self.vehicle, self._speeds(V))
 
     def straights(self, V: Array, tangents: Array | None = None) -> Array:
-        """Lengths (k, n + 1) left for the straights at speeds V (k, n); tangent lengths (k, n) default to the true."""
+        """Lengths (k, n + 1) left for the straights at speeds V (k, n); tangent lengths (k, n) default to exact."""
         V = self._speeds(V)
         alpha = self.tangents(V) if tangents is None else array("tangents", tangents, *V.shape, finite=False)
         alpha = np.pad(alpha, ((0, 0), (1, 1)))
@@ -128,7 +129,7 @@ class Route:
         return np.asarray(straights.sum(axis=1) + self.turning(V).sum(axis=1))
 
     def lack(self, V: Array, tangents: Array | None = None) -> Array:
-        """By how much (k,) in m straights are too short at speeds V (k, n), in sum; 0 is feasible."""
+        """Sum (k,), m, of the lengths by which straights are too short at speeds V (k, n); 0 is feasible."""
         V = self._speeds(V)
         v = self._with_ends(V)
         needed = np.abs(v[:, 1:] ** 2 - v[:, :-1] ** 2) / (2 * self.vehicle.a_max)
@@ -138,9 +139,9 @@ class Route:
     def clear_speed(self, corner: int, obstacles: Sequence[shapely.Geometry], radius: float) -> float:
         """The largest speed up to the cap at which the curve, and all between it and the corner, keeps the radius.
 
-        The faster the robot, the larger the curve's radius where it has a given direction, whether its curves are
-        copies of each other in different sizes or have longer arcs. So each lies between the corner and all faster
-        ones, what is free at one speed is free at all below it, and halving the interval finds the largest.
+        The faster the robot, the larger the radius of its curve at a given direction, whether the curves are similar to
+        each other or have longer arcs. So each curve lies between the corner and all faster ones: a speed below a free
+        one is free, and bisection finds the largest.
         """
         if not 0 <= corner < len(self.caps):
             raise InvalidSetting(f"corner is 0 to {len(self.caps) - 1}, got {corner}")

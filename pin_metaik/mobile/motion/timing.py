@@ -46,23 +46,24 @@ def plan_trajectory(
     model: LearnedTurn | None = None,
     watch: Watch | None = None,
 ) -> TrajectoryPlan:
-    """Plan the quickest motion of straights and curves along a polyline, from rest to rest.
+    """Plan the quickest motion of straights and turns along a polyline, from rest to rest.
 
-    Curves lie inside their corners, where the obstacle is: a path along the obstacles grown by the radius alone leaves
-    little room for them, and where there is none the robot stops. Plan the path with a margin.
+    A turn cuts its corner on the side where the obstacle is. A path that keeps only the radius from the obstacles
+    leaves little room for it, and at a corner without room the robot stops: plan the path with a margin.
 
     Args:
         path: A polyline, or its points (n, 2) in m.
         vehicle: The robot and its limits.
         obstacles: Polygons, lines and points, not grown: anything ``read_obstacles`` takes.
-        method: ``dp`` finds the best speeds; ``de`` searches for them; ``ann`` searches with the network's tangent
-            lengths, as the paper, and executes what comes out with the true turns.
+        method: ``dp`` finds the optimal speeds by dynamic programming; ``de`` searches for them by a metaheuristic;
+            ``ann`` searches with a network's tangent lengths, as the paper does, and executes the result with exact
+            turns.
         radius: Distance of the robot's centre from obstacles, in m; default: the robot's radius.
-        algorithm: What searches, for ``de`` and ``ann``.
+        algorithm: The metaheuristic, for ``de`` and ``ann``.
         budget: Budget of the search.
         rng: Seed or generator; ``None`` is a fixed seed.
-        model: The network for ``ann``; default: a new one, learned in a second.
-        watch: Called after every generation of the search with evaluations done and in all; True ends it.
+        model: The network for ``ann``; default: a new one, which takes a second to train.
+        watch: Called after every generation of the search with the evaluations done and in all; returning True ends it.
 
     Raises:
         InvalidSetting: No such method, or a radius below zero.
@@ -75,7 +76,7 @@ def plan_trajectory(
     keep = vehicle.radius if radius is None else radius
     within("radius", keep, 0)
     if method == "ann" and not isinstance(vehicle, SynchroDrive):
-        raise InvalidSetting(f"ann: networks are learned for a SynchroDrive, {vehicle.name} is none; take dp or de")
+        raise InvalidSetting(f"ann: networks are learned for a SynchroDrive, which {vehicle.name} is not; use dp or de")
     if method == "ann" and isinstance(vehicle, SynchroDrive):
         model = model or learn_turn(vehicle)
     solid = read_obstacles(obstacles)

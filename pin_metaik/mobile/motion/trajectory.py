@@ -57,7 +57,7 @@ class Phase(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """States over time, each (n,); accelerations hold from their row to the next.
+    """States over time, each (n,); an acceleration holds from its time to the next.
 
     Attributes:
         t: Time, s.
@@ -93,7 +93,7 @@ class Samples:
 @checked
 @dataclass(frozen=True)
 class State:
-    """Where a robot is, and how it moves.
+    """State of a mobile robot: pose, speed and turning rate.
 
     Attributes:
         x: Position, m.
@@ -103,7 +103,7 @@ class State:
         omega: Turning rate, rad/s.
 
     Raises:
-        InvalidSetting: One of them is no finite number, or the speed is below zero.
+        InvalidSetting: One of them is not a finite number, or the speed is below zero.
     """
 
     x: float
@@ -124,17 +124,19 @@ class State:
 
 @checked
 class Trajectory:
-    """A robot's motion as a list of phases, from a pose.
+    """A robot's motion from a pose, as a sequence of phases with constant accelerations.
 
     Attributes:
         phases: Its phases, one after the other.
         start: Pose (x, y, heading) in m and rad.
         v: Speed at the start, m/s.
-        duration: Of the whole, s.
+        duration: Duration of the motion, s.
     """
 
     def __init__(self, phases: Sequence[Phase], start: tuple[float, float, float], v: float = 0.0) -> None:
-        array("phases", [tuple(phase) for phase in phases] or np.empty((0, 4)), "p", 4)
+        rows = array("phases", [tuple(phase) for phase in phases] or np.empty((0, 4)), "p", 4)
+        if len(rows) and rows[:, 0].min() < 0.0:
+            raise InvalidSetting(f"a phase lasts 0 s or longer, got {rows[:, 0].min():g} s")
         array("start", start, 3)
         within("v", v, 0)
         self.phases = tuple(phases)
@@ -155,7 +157,7 @@ class Trajectory:
 
     @checked
     def state(self, t: float) -> State:
-        """The state at a time t in s: what planning again in motion begins with."""
+        """The state at a time t in s, for instance to plan again from (``plan_in_motion``)."""
         at = self.at(t)
         v = max(float(at.v[0]), 0.0)  # by rounding it may be below, at rest
         return State(float(at.x[0]), float(at.y[0]), float(at.heading[0]), v, float(at.omega[0]))
@@ -168,9 +170,9 @@ class Trajectory:
 
     @checked
     def moved(self, a: Array, b: Array) -> Moved:
-        """How far all between times a and b (n,), in s, of one phase is at most from the middle of the two.
+        """Bound (n,), m, on how far positions between times a and b (n,), in s, are from the one in the middle.
 
-        In a phase speed and turning rate change evenly, so none is larger than at one of the two ends.
+        Both times are in one phase, in which speed and turning rate change linearly and are largest at an end.
         """
         a = array("a", a, "n")
         b = array("b", b, len(a))
@@ -208,7 +210,9 @@ class Trajectory:
             InvalidSetting: A dt that is not above zero.
         """
         if not dt > 0 or self.duration > MANY * dt:
-            raise InvalidSetting(f"dt is above 0 s and not a {MANY:,}th of {self.duration:g} s, got {dt!r}")
+            raise InvalidSetting(
+                f"dt is above 0 s and makes at most {MANY:,} samples of {self.duration:g} s, got {dt!r}"
+            )
         return self.at(np.union1d(np.arange(0.0, self.duration, dt), self._begins))
 
     @checked
@@ -234,7 +238,7 @@ class Trajectory:
 
 @checked
 def load_trajectory(file: str | File) -> Trajectory:
-    """The exact motion in a JSON file that ``plan --out`` wrote, or anybody from ``TrajectoryPlan.as_dict()``.
+    """Read a motion exactly, from JSON that ``plan --out`` wrote or that holds ``TrajectoryPlan.as_dict()``.
 
     Raises:
         InvalidSetting: The file is missing, or has no start, v and phases that make a motion.

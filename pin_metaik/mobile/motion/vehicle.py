@@ -31,7 +31,7 @@ class SynchroDrive:
         a_max: Largest acceleration, m/s^2.
         omega_max: Largest turning rate, rad/s.
         alpha_max: Largest angular acceleration, rad/s^2.
-        radius: Of the circle around it, m.
+        radius: Radius of the circle around the robot, m.
 
     Raises:
         InvalidSetting: A limit that is not a number above zero, or a radius below zero.
@@ -49,7 +49,7 @@ class SynchroDrive:
 
     @property
     def saturation(self) -> float:
-        """The turn, in rad, from which on the robot reaches its largest turning rate."""
+        """The least angle of a turn, rad, in which the robot reaches its largest turning rate."""
         return self.omega_max**2 / self.alpha_max
 
     @property
@@ -58,7 +58,7 @@ class SynchroDrive:
         return False
 
     def omega_at(self, v: ArrayLike) -> Array:
-        """Largest turning rate (...), rad/s, at speeds v (...), m/s: the same at all."""
+        """Largest turning rate (...), rad/s, at speeds v (...), m/s: the same at every speed."""
         return np.full(array("v", v, "...").shape, float(self.omega_max))
 
 
@@ -67,15 +67,14 @@ class SynchroDrive:
 class DifferentialDrive:
     """Two driven wheels on one axis: ``v = (r + l) / 2``, ``omega = (r - l) / track`` for their speeds r and l.
 
-    Both share one limit, ``|v| + |omega| track / 2 <= wheel_speed``, and so do the accelerations: what a wheel gives to
-    turning it cannot give to driving on.
+    Speed and turning rate share one limit, ``|v| + |omega| track / 2 <= wheel_speed``, and likewise the accelerations.
 
     Attributes:
         name: What to call it.
         track: Distance of the wheels, m.
         wheel_speed: Largest speed of a wheel over the ground, m/s: its rate in rad/s times its radius.
         wheel_acceleration: Largest acceleration of a wheel over the ground, m/s^2.
-        radius: Of the circle around the robot, m, from the middle between the wheels.
+        radius: Radius of the circle around the robot, m, centred between the wheels.
 
     Raises:
         InvalidSetting: A limit that is not a number above zero, or a radius below zero.
@@ -116,11 +115,11 @@ class DifferentialDrive:
         return True
 
     def omega_at(self, v: ArrayLike) -> Array:
-        """Largest turning rate (...), rad/s, at speeds v (...), m/s: the rest of the outer wheel's limit."""
+        """Largest turning rate (...), rad/s, at speeds v (...), m/s, at which the outer wheel keeps its limit."""
         return np.asarray(2 * np.maximum(self.wheel_speed - np.abs(array("v", v, "...")), STILL) / self.track)
 
     def wheels(self, v: ArrayLike, omega: ArrayLike) -> Array:
-        """Speeds (..., 2) of the left and the right wheel over the ground, m/s; of accelerations, accelerations.
+        """Speeds (..., 2) of the left and right wheel over the ground, m/s; for accelerations, their accelerations.
 
         Args:
             v: Speed (...), m/s.
@@ -173,11 +172,11 @@ def load_vehicle(source: str | Path) -> Vehicle:
     Args:
         source: ``nomad200``, ``nomad200_driver``, ``turtlebot3_burger``, ``turtlebot3_waffle``, or the path of a
             ``.json``: of a differential drive with track, wheel_speed, wheel_acceleration (m) and radius; of a
-            synchro-drive with any of v_max, a_max, omega_max, alpha_max (m and rad) and radius, where what it leaves
-            out is the Nomad 200's.
+            synchro-drive with any of v_max, a_max, omega_max, alpha_max (m and rad) and radius; values left out are
+            those of the Nomad 200.
 
     Raises:
-        UnknownName: None of that name.
+        UnknownName: There is no robot of that name.
         InvalidSetting: The file is missing or malformed, or a limit makes no sense.
     """
     if Path(source).suffix.lower() == ".json":

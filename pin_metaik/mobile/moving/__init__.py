@@ -1,1 +1,1 @@
-"""Obstacles that move, and paths with times among them: waiting where that is quicker than going round."""
+"""Moving obstacles, and paths with times among them that wait where that is quicker than a detour."""

@@ -1,4 +1,4 @@
-"""An obstacle that moves without turning: an outline, and where it is when."""
+"""An obstacle that moves without turning: an outline, and its position over time."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ FACES = 64  # of the polygon round a disc: it is 0.12 percent of the radius larg
 @checked
 @dataclass(frozen=True, eq=False)
 class MovingObstacle:
-    """A convex outline that moves along straight lines, evenly from one time to the next, and does not turn.
+    """A convex outline that moves along straight lines, at constant speed from one time to the next, and does not turn.
 
-    Before its first time it stands at its first place, and after its last at its last.
+    Before its first time it is at rest at its first position, and after its last time at its last one.
 
     Attributes:
-        footprint: Its outline around its own origin: a convex polygon, or a disc (``Footprint.disc``). What is not
-            convex is given as several obstacles with the same way.
-        way: (k, 3) rows of time in s, x and y of its origin in m; times rise.
+        footprint: Its outline around its own origin: a convex polygon, or a disc (``Footprint.disc``). An outline that
+            is not convex is given as several obstacles with the same ``way``.
+        way: (k, 3) rows of time in s (increasing), x and y of its origin in m.
         name: What to call it.
 
     Raises:
-        InvalidGeometry: A way without a row, with numbers that are not finite, or whose times do not rise.
+        InvalidGeometry: ``way`` has no row, numbers that are not finite, or times that do not increase.
     """
 
     footprint: Footprint
@@ -101,7 +101,7 @@ def load_moving(source: str | Path) -> tuple[MovingObstacle, ...]:
     ``around`` a distance round it; ``radius`` alone is a disc. In s and m.
 
     Raises:
-        InvalidGeometry: The file is missing or malformed, or has a key that nobody would read.
+        InvalidGeometry: The file is missing or malformed, or has an unknown key.
     """
     path = Path(source)
     given = read_json(path, InvalidGeometry)

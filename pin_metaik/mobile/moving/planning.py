@@ -1,8 +1,8 @@
-"""The quickest way over a graph of places among obstacles that move: A* over places and windows of time.
+"""The quickest path over a graph of places among moving obstacles: A* over places and time windows.
 
-The graph is extended by time without steps of time: a place is free in windows, within one of which an earlier arrival
-is never worse, because the robot can wait (safe interval path planning, Phillips and Likhachev 2011). The windows, and
-the times at which a line may be driven, are computed from the motions of the obstacles, not sampled.
+Time is not discretised: a place is free in windows, within one of which an earlier arrival is never worse, because the
+robot can wait (safe interval path planning, Phillips and Likhachev 2011). The windows, and the times at which a line
+may be driven, are computed from the motions of the obstacles, not sampled.
 """
 
 from __future__ import annotations
@@ -51,27 +51,29 @@ def plan_among_moving(
     places: ArrayLike | None = None,
     watch: Watch | None = None,
 ) -> WaitingPath:
-    """The quickest motion over straight lines among obstacles that stand and obstacles that move.
+    """The quickest motion over straight lines among obstacles at rest and moving obstacles.
 
-    The robot drives at its speed or waits, and sets out and stops at once. It turns and waits only at places: start,
-    goal, the corners of the obstacles that stand, as they are grown, the middles of ``cells``, and ``places``. Of all
-    such motions over the lines of sight between these places the result is a quickest one; it may be that one with
-    other places, or other speeds, is quicker still. At the goal it can stay for good.
+    The robot drives at its speed or waits, and starts and stops instantly. It turns and waits only at certain places:
+    start, goal, corners of the grown obstacles at rest, centres of the ``cells``, and ``places``. The result is a
+    quickest one of all such motions along lines of sight between these places; with other places or speeds there may be
+    a quicker one. At the goal the robot can stay for ever.
 
     Args:
-        problem: What stands, start, goal and the clearance, which is kept from what moves, too; a scene for a point.
-        moving: What moves. Discs are taken for polygons of 64 sides around them.
-        speed: Of the robot, m/s.
-        start_time: When it begins, s, by the obstacles' clock.
-        cells: Square cells along the longer side of the workspace in whose middles it may turn and wait; 0 for none.
-        places: More places (k, 2) to wait and to turn at, m; those that are not free are left out.
-        watch: Called for every window opened, with their number; True ends the search.
+        problem: Obstacles at rest, start, goal, and the clearance, which is kept from moving obstacles too; or a scene,
+            for a point robot.
+        moving: The moving obstacles. Discs are replaced by polygons of 64 sides around them.
+        speed: Speed of the robot, m/s.
+        start_time: When the motion begins, s, on the time axis of the obstacles.
+        cells: Number of square cells along the longer side of the workspace, in whose centres it may turn and wait; 0
+            for none.
+        places: Further positions (k, 2) to turn and wait at, m; those that are not free are left out.
+        watch: Called with the number of time windows expanded so far; returning True ends the search.
 
     Raises:
         Blocked: The robot cannot be at the start or the goal.
-        NoPath: There is no way even if nothing moves.
-        NoTimedPath: No motion over these places keeps clear of what moves, or the watch ended the search; a ``NoPath``
-            that says why.
+        NoPath: There is no path even if nothing moves.
+        NoTimedPath: No motion over these places keeps clear of the moving obstacles, or the watch ended the search; a
+            subclass of ``NoPath`` with the reason.
         InvalidSetting: A speed that is not above zero, or too many places.
     """
     began = perf_counter()
@@ -115,9 +117,9 @@ class _Search:
         """Times (n,) and places of the quickest motion, waits included."""
         first = next((k for k, (low, high) in enumerate(self.windows(0)) if low <= self.begin < high), None)
         if first is None:
-            raise self.none(f"something that moves is over the start at {self.begin:g} s")
+            raise self.none(f"a moving obstacle covers the start at {self.begin:g} s")
         if not self.windows(1) or self.windows(1)[-1][1] < np.inf:
-            raise self.none("something that moves stays over the goal for good")
+            raise self.none("a moving obstacle stays over the goal for ever")
         goal = (1, len(self.windows(1)) - 1)
         arrival: dict[State, float] = {(0, first): self.begin}
         before: dict[State, tuple[State, float]] = {}  # where from, and when it set out
@@ -137,7 +139,7 @@ class _Search:
                 if there < arrival.get(following, np.inf) and following not in settled:
                     arrival[following], before[following] = there, (state, departure)
                     heappush(heap, (there + float(self.to_go[following[0]]), next(order), following))
-        raise self.none("whatever waits are made, every way over these places meets something that moves")
+        raise self.none("with any waits, every path over these places meets a moving obstacle")
 
     def windows(self, node: int) -> Windows:
         """When a place is free."""

@@ -1,4 +1,4 @@
-"""A path with times: straight lines at one speed, and waits between them; and what it is worth by a test of its own."""
+"""A path with times: straight lines at one speed, and waits between them; and its clearance, tested independently."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ ROUNDING = 1e-9  # of the workspace's width; as much nearer still keeps the clea
 
 @dataclass(frozen=True, eq=False)
 class WaitingPath:
-    """Where a robot is when, among obstacles that move.
+    """A path with times among moving obstacles.
 
     Attributes:
-        times: (n,) rising, s, from the time it was planned for.
-        points: (n, 2) m; where two in a row are the same it waits.
-        speed: Of the robot, m/s.
-        problem: The scene that stands still, and the clearance.
-        moving: The obstacles that move.
+        times: (n,) increasing, s, from ``start_time`` on.
+        points: (n, 2) m; between two equal points the robot waits.
+        speed: Speed of the robot, m/s.
+        problem: The scene at rest, and the clearance.
+        moving: The moving obstacles.
         direct: Time, s, that the shortest path takes at this speed if nothing moves; no motion is quicker.
-        opened: Pairs of a place and a window of time that the search opened.
+        opened: Number of pairs of a position and a time window that the search expanded.
         seconds: Time taken to plan, s.
     """
 
@@ -48,19 +48,19 @@ class WaitingPath:
 
     @property
     def duration(self) -> float:
-        """From setting out, or beginning to wait, to the goal, s."""
+        """Time from the start, including waiting there, to the goal, s."""
         return float(self.times[-1] - self.times[0])
 
     @property
     def path(self) -> Path:
-        """The places without the times."""
+        """The path without the times."""
         moved = np.concatenate(([True], np.hypot(*np.diff(self.points, axis=0).T) > 0))
         points = self.points[moved]
         return Path(points if len(points) > 1 else np.repeat(points, 2, axis=0))
 
     @property
     def waits(self) -> list[tuple[float, float, float]]:
-        """Where it waits and for how long: (x, y, s)."""
+        """Where and for how long it waits: (x, y, duration in s)."""
         stood = np.hypot(*np.diff(self.points, axis=0).T) == 0
         held = np.diff(self.times)[stood]
         return [
@@ -75,23 +75,23 @@ class WaitingPath:
 
     @cached_property
     def clearance(self) -> float:
-        """Least distance, m, of the robot's centre from an obstacle that moves, at the goal later too; inf without any.
+        """Least distance, m, of the robot's centre from a moving obstacle, also after arrival; inf without any.
 
-        While both move evenly, the robot seen from the obstacle moves along a straight line, whose distance from the
-        outline is exact: nothing is sampled.
+        While both move at constant velocity, the robot moves along a straight line relative to the obstacle, whose
+        distance from the outline is computed exactly: nothing is sampled.
         """
         return min((gap for obstacle in self.moving for gap in self._gaps(obstacle)), default=float("inf"))
 
     @property
     def collision_free(self) -> bool:
-        """Whether it keeps the clearance from all that stands and all that moves."""
+        """Whether it keeps the clearance from all obstacles, at rest and moving."""
         space = self.problem.space
         room = ROUNDING * space.extent
         return space.holds(self.path.points) and self.clearance >= space.clearance - room
 
     @property
     def success(self) -> bool:
-        """The same."""
+        """Whether it is free of collisions."""
         return self.collision_free
 
     def __bool__(self) -> bool:

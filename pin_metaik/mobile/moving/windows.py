@@ -1,4 +1,4 @@
-"""When a robot may set out along a line, or stand at a place, among obstacles that move."""
+"""The times at which a robot may start along a line, or stay at a place, among moving obstacles."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Paths of a point among polygons: the shortest, its homotopic alternatives, and those metaheuristics find."""
+"""Paths of a point among polygons: the shortest, those of other homotopy classes, and those of metaheuristics."""

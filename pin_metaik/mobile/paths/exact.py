@@ -38,7 +38,7 @@ def shortest_path(space: FreeSpace, start: Point, goal: Point, visibility: Visib
 
     Raises:
         Blocked: The robot cannot be at the start or the goal.
-        NoPath: There is no way between them.
+        NoPath: There is no path between them.
     """
     space.check("start", start)
     space.check("goal", goal)

@@ -49,12 +49,12 @@ class Fitness(Protocol):
 @checked
 @dataclass(frozen=True)
 class ExactFitness:
-    """Length, and ``c_p (1 + length inside)`` for every stretch of a segment inside obstacles or walls.
+    """Length, plus ``c_p (1 + length inside)`` for every part of a segment inside obstacles or walls.
 
-    The obstacles are the true ones: concave where they are concave, grown by the clearance, joined with the walls.
+    The obstacles are the exact ones (also where they are concave), grown by the clearance and united with the walls.
 
     Attributes:
-        penalty: c_p in widths of the workspace. From 6 on no path pays for going through.
+        penalty: c_p in widths of the workspace. From 6 on no path is cheaper by going through an obstacle.
     """
 
     penalty: float = C_P
@@ -75,13 +75,13 @@ class PaperFitness:
 
     Obstacles are replaced by their convex hulls; h is half the diagonal of a hull's bounding box, d the distance of the
     box's centre from the line of the segment; a segment hits an obstacle if their bounding boxes overlap and the
-    obstacle has vertices on both sides of the segment's line (Eq. 4). So a path may be punished for what it does not
-    touch, and never the reverse; a start or goal in the pocket of a concave obstacle is always punished.
+    obstacle has vertices on both sides of the segment's line (Eq. 4). So a path may be penalised for an obstacle that
+    it does not touch, never the reverse; a start or goal in the pocket of a concave obstacle is always penalised.
 
     Attributes:
         penalty: c_p in widths of the workspace; the paper's 120 by default.
-        detour_penalty: p_p, factor of a length above the limit.
-        detour_limit: That limit, in distances from start to goal.
+        detour_penalty: p_p, factor for a length above ``detour_limit``.
+        detour_limit: That limit, as a multiple of the distance from start to goal.
         detour_of: Whose length: the paper's ``segment``, which is never so long in its workspace, or the ``path``.
     """
 

@@ -1,4 +1,4 @@
-"""Alternatives: the k shortest paths that no one can be bent into another without crossing an obstacle.
+"""Alternatives: the shortest paths of the k best homotopy classes.
 
 Among polygons every homotopy class has exactly one taut path, a polyline that bends at corners only and wraps around
 their obstacles. So the k shortest taut paths are the k best classes, one each. They are found best first, over partial
@@ -46,7 +46,7 @@ def shortest_paths(
 
     Raises:
         Blocked: The robot cannot be at the start or the goal.
-        NoPath: There is no way between them.
+        NoPath: There is no path between them.
         InvalidSetting: A count below 1.
     """
     whole("count", count, 1)

@@ -22,7 +22,7 @@ class Path:
     """Straight lines from point to point.
 
     Attributes:
-        points: (n, 2) start, corners and goal, n >= 2, read-only; in: anything numpy makes that of.
+        points: (n, 2) start, corners and goal, n >= 2; kept as a read-only array.
 
     Raises:
         InvalidGeometry: The points are not (n, 2) finite numbers.
@@ -56,7 +56,7 @@ class Path:
         """The same path without repeated points and points (nearly) on the line between their neighbours.
 
         Args:
-            slack: How far from that line a point may be to be left out.
+            slack: Points nearer to that line than this are left out, in the path's unit.
         """
         kept = [self.points[0]]
         for point, following in zip(self.points[1:-1], self.points[2:], strict=True):
@@ -68,10 +68,10 @@ class Path:
 
     @checked
     def simplified(self, deviation: float) -> Path:
-        """A path of fewer points for one of many, as grids and samplers give: start, goal and some of those between.
+        """The path with fewer points, for paths of grids and samplers: start, goal and some of the points between.
 
-        Every point left out is within a deviation of the new path (Douglas and Peucker 1973), which keeps as much less
-        clearance at most. Turns far apart are driven faster than as many small ones.
+        Every point left out is within ``deviation`` of the new path (Douglas and Peucker 1973), whose clearance is
+        smaller by at most that. Few sharp turns are driven faster than many small ones.
 
         Args:
             deviation: In the path's unit, at least 0.

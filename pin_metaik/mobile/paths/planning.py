@@ -1,4 +1,4 @@
-"""Planning a path: exactly, by a metaheuristic over via points, or by what others made.
+"""Planning a path: exactly, by a metaheuristic over via points, or by a planner of another package.
 
 However it is planned, the exact test has the last word.
 """
@@ -9,10 +9,11 @@ import math
 from time import perf_counter
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from pin_metaik.arguments import checked
+from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
-from pin_metaik.errors import InvalidSetting, UnknownName
+from pin_metaik.errors import InvalidGeometry, InvalidSetting, UnknownName
 from pin_metaik.interrupts import Pressed, wrapped
 from pin_metaik.mobile.errors import NoPath
 from pin_metaik.mobile.paths.fitness import Fitness, make_fitness
@@ -29,7 +30,7 @@ from pin_metaik.optimize.settings import whole
 from pin_metaik.randomness import as_generator, repeatable
 from pin_metaik.watching import Watch, ended
 
-EXACT = "exact"
+EXACT, GIVEN = "exact", "given"
 
 # Table 2 of the paper, for the two it has; v_max is 1 in a workspace of 10.
 PAPER_SETTINGS: dict[str, Metaheuristic] = {
@@ -62,25 +63,26 @@ def plan_path(
             or as an object; or one of ``PLANNERS`` for comparison: ``"astar"`` on a grid, ``"rrt"``, ``"rrtconnect"``,
             ``"rrtstar"``, ``"informed"`` and ``"prm"`` by OMPL, or an object with a method ``route``.
         fitness: What metaheuristics minimise: ``"exact"``, ``"paper"`` or an object.
-        via: Via points. With fewer than the shortest path has corners it is out of reach.
-        budget: What a search may spend; an evaluation is one path of a metaheuristic, or one straight line that another
-            planner tests. Those that end with their first path, and A*, may need less or more.
+        via: Number of via points. With fewer than the shortest path has corners, that path cannot be found.
+        budget: Budget of a search; an evaluation is one path of a metaheuristic, or one straight line that another
+            planner tests. Planners that end with their first path may use less, and A* less or more.
         rng: Seed or generator; ``None`` is a fixed seed.
-        seeded: Whether to start one individual at the shortest path: for a fitness that is not its length, or to see
-            that the search can only be better than that.
-        trace: Whether to keep the convergence.
-        watch: Called after every generation of the search with evaluations done and in all, and the paths of the
-            generation: ``problem.through(x)`` for each x of ``Progress.population.X``; True ends it.
+        seeded: Whether to start one individual at the shortest path. This makes sense for a fitness other than the
+            length; the result is then never worse than that path.
+        trace: Whether to keep the convergence in ``PathPlan.trace``.
+        watch: Called after every generation of the search with the evaluations done and in all, and the paths of the
+            generation (``problem.through(x)`` for each x of ``Progress.population.X``); returning True ends it.
 
     Returns:
-        The plan: check ``plan.success``. A metaheuristic's best may go through an obstacle; samples may find nothing.
+        The plan: check ``plan.success``. The best path of a metaheuristic may go through an obstacle; a sampling
+        planner may find none.
 
     Raises:
         Blocked: The robot cannot be at the start or the goal.
-        NoPath: There is no way, for the exact planner and ``seeded``.
+        NoPath: There is no path; raised by the exact planner and with ``seeded``.
         UnknownName: No planner or fitness of that name.
         InvalidSetting: Fewer than one via point, or too few for the seed.
-        InvalidBudget: A budget that would never end, or a target where no cost is minimised.
+        InvalidBudget: A budget without an end, or with a ``target`` for a planner that minimises no cost.
         MissingExtra: A planner's package is not installed.
         Interrupted: Ctrl-C, after the first generation; its ``result`` is the plan with the best path so far.
     """
@@ -169,7 +171,7 @@ def _searched(problem: PathProblem, found: Result, method: str, seed: int | None
 
 @checked
 def plan_alternatives(problem: PathProblem | Scene, count: int) -> list[PathPlan]:
-    """The shortest path and those that go another way round, one for each homotopy class, shortest first.
+    """The shortest paths around the obstacles, one for each homotopy class, shortest first.
 
     Args:
         problem: A problem, or a scene for a point robot.
@@ -189,6 +191,26 @@ def plan_alternatives(problem: PathProblem | Scene, count: int) -> list[PathPlan
     return [_exact(path, problem, status, took, None) for path, status in zip(paths, rank, strict=True)]
 
 
+@checked
+def path_through(problem: PathProblem | Scene, via: ArrayLike) -> PathPlan:
+    """A path of your own: whether it is free by the exact test, and its gap to the shortest.
+
+    Args:
+        problem: A problem, or a scene for a point robot.
+        via: (n, 2) the points that it goes through on its way from start to goal.
+
+    Raises:
+        Blocked: The robot cannot be at the start or the goal.
+        InvalidGeometry: The points are not (n, 2) finite numbers.
+    """
+    if isinstance(problem, Scene):
+        problem = PathProblem.of(problem)
+    points = array("via", via, "n", 2, error=InvalidGeometry)
+    path = problem.through(points.ravel())
+    status = PathStatus.FREE if problem.space.holds(path.points) else PathStatus.COLLIDES
+    return PathPlan(path, status, _optimum(problem), path.length, GIVEN, 0, 0.0, None, False, problem)
+
+
 def _exact(path: Path, problem: PathProblem, status: PathStatus, seconds: float, seed: int | None) -> PathPlan:
     """A plan that needed no search."""
     length = path.length
@@ -203,11 +225,11 @@ def _rank(path: Path, problem: PathProblem) -> PathStatus:
 
 @checked
 def planner_of(method: str | Metaheuristic | PathPlanner) -> Metaheuristic | PathPlanner:
-    """What a name stands for: a metaheuristic, ``ga`` and ``pso`` with the paper's settings, or another planner.
+    """The planner of a name: a metaheuristic (``ga`` and ``pso`` with the paper's settings) or another planner.
 
     Raises:
-        UnknownName: Nothing of that name; ``exact`` has no settings, and is not among them.
-        InvalidSetting: An object that is neither.
+        UnknownName: There is none of that name; ``exact``, which has no settings, is not among them.
+        InvalidSetting: An object that is not a planner.
     """
     if isinstance(method, str):
         if method in PAPER_SETTINGS:

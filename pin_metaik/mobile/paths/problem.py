@@ -1,4 +1,4 @@
-"""A planning problem: a scene, the clearance to keep, and what can be worked out once for all planners."""
+"""A planning problem: a scene, the clearance to keep, and data that all planners share."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from pin_metaik.optimize.settings import few, within
 
 @dataclass(frozen=True, eq=False)
 class PathProblem:
-    """A scene with the clearance to keep, and what can be worked out once for all planners.
+    """A scene with the clearance to keep, and data that all planners share.
 
     Attributes:
         scene: The world, start and goal.
@@ -39,10 +39,10 @@ class PathProblem:
 
         Args:
             scene: The world, start and goal.
-            radius: Of the robot, in the scene's unit.
-            margin: Distance to keep on top of that.
-            join: How grown obstacles end at their corners: ``mitre`` or ``round``; default: ``mitre``, which has fewer
-                corners, and ``round`` if that leaves no way.
+            radius: Radius of the robot, in the scene's unit.
+            margin: Distance to keep in addition.
+            join: How corners of grown obstacles are joined: ``mitre`` or ``round``; default: ``mitre``, which has fewer
+                corners, and ``round`` if there is then no path.
 
         Raises:
             Blocked: The robot cannot be at the start or the goal.
@@ -65,7 +65,7 @@ class PathProblem:
 
     @cached_property
     def optimum(self) -> Path:
-        """The shortest path. Raises NoPath without one."""
+        """The shortest path. Raises NoPath if there is none."""
         return shortest_path(self.space, self.scene.start, self.scene.goal, self.visibility)
 
     @checked
@@ -75,7 +75,7 @@ class PathProblem:
 
     @checked
     def box(self, via: int) -> Box:
-        """Where via points may lie: the workspace inside its walls, once for each."""
+        """The search space of via points: for each of them the workspace inside its walls."""
         few("via", via)
         x_min, y_min, x_max, y_max = self.space.box
         return Box(np.tile([x_min, y_min], via), np.tile([x_max, y_max], via))

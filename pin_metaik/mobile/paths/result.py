@@ -38,16 +38,16 @@ class PathPlan:
 
     Attributes:
         path: From start to goal.
-        status: Whether it is the shortest, free, or not a path at all.
-        optimum: Length of the shortest path among the obstacles as they are grown; None if there is no way.
-        cost: The fitness at the path; without a metaheuristic its length, inf if none was found.
+        status: Whether it is proved the shortest, free of collisions, or not a valid path.
+        optimum: Length of the shortest path among the grown obstacles; None if there is no path.
+        cost: The fitness of the path; for other planners its length, inf if none was found.
         method: Name of the planner.
         evaluations: Paths whose fitness was computed, or straight lines tested; 0 for the exact planner.
-        seconds: Time taken, in s: of a search without the optimum that the gap is measured by; of the exact planner
-            without the work done earlier for the problem.
-        seed: Of every random choice; None if a generator was handed in.
+        seconds: Time taken, s. A search's time excludes the computation of ``optimum``; the exact planner's time
+            excludes work done earlier for the same problem.
+        seed: Seed of every random choice; None if a generator was given.
         interrupted: Whether its search was stopped, by Ctrl-C or its watch.
-        problem: What was asked.
+        problem: The problem.
         trace: Evaluations and best cost after each generation (g, 2), when asked for.
     """
 
@@ -75,7 +75,7 @@ class PathPlan:
 
     @property
     def success(self) -> bool:
-        """The same: a path that collides is no path."""
+        """Whether the path is free of collisions."""
         return self.collision_free
 
     def __bool__(self) -> bool:
@@ -83,14 +83,14 @@ class PathPlan:
 
     @property
     def gap(self) -> float | None:
-        """How much longer than the optimum it is, as a share of that; None for a path that is not free."""
+        """How much longer than the optimum the path is, relative to it; None for a path that is not free."""
         if self.optimum is None or not self.collision_free:
             return None
         return max(0.0, self.length / self.optimum - 1) if self.optimum else 0.0
 
     @property
     def clearance(self) -> float:
-        """Least distance from an obstacle, not grown; inf without obstacles."""
+        """Least distance from an original (not grown) obstacle; inf without obstacles."""
         return self.problem.space.distance(self.path.points)
 
     def verify(self) -> bool:

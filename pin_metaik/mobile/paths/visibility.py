@@ -64,7 +64,7 @@ class VisibilityGraph:
 
 @checked
 class Visibility:
-    """Which points of a free space see each other, for any start and goal.
+    """Visibility graph of a free space, for any start and goal.
 
     Attributes:
         space: The free space.
@@ -85,7 +85,7 @@ class Visibility:
 
     @cached_property
     def mutual(self) -> NDArray[np.bool_]:
-        """Which corners see each other along a taut line (c, c); all pairs, worked out when first asked for."""
+        """(c, c) which corners see each other along a taut line; computed on first use."""
         corners = self.border.corners
         points = self.border.vertices[corners]
         sees = np.zeros((len(corners), len(corners)), dtype=bool)
@@ -117,10 +117,10 @@ class Visibility:
         return VisibilityGraph(self.border, points, edges)
 
     def inside(self, a: Array, b: Array) -> NDArray[np.bool_]:
-        """Which lines from a (n, 2) to b (n, 2), one of them no corner, run inside an obstacle.
+        """Which lines from a (n, 2) to b (n, 2), of which one is not a corner, run inside an obstacle.
 
-        Kernels see where a line crosses the border. From one point on it to another, inside, it crosses nothing; at a
-        corner that cannot be, as lines are taut there.
+        The kernels find where a line crosses the border. A line inside an obstacle between two points of its border
+        crosses nothing, and is found here. At a corner that cannot happen, as lines there are taut.
         """
         a, b = array("a", a, "n", 2), array("b", b, "n", 2)
         if 1 not in (len(a), len(b)) and len(a) != len(b):

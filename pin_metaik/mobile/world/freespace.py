@@ -30,19 +30,19 @@ HAIR = 4.0  # of that: half the thickness of a line or point that nothing grows
 
 @dataclass(frozen=True, eq=False)
 class FreeSpace:
-    """The workspace without the obstacles grown by a clearance. Its border belongs to it: touching is free.
+    """The workspace minus the obstacles grown by a clearance. Its border belongs to it: touching is allowed.
 
-    One rule for what has no width, however the scene is given. A gap between obstacles, or between an obstacle and a
-    wall, is a way only if it is wider than 2e-10 of the workspace (or 2e-12 of its largest coordinate, if that is more:
-    there doubles have no finer steps to speak of). Where two touch, in a line or in a point, there is none. A part of
-    an obstacle that is thinner than that is no obstacle. A line or a point is one, whatever its width: nothing goes
-    through a line. The planners, the exact test and the fitness that counts overlaps all follow it.
+    What has no width follows one rule, however the scene is given, in the planners, in the exact test and in the exact
+    fitness. A gap between obstacles, or between an obstacle and a wall, is passable only if it is wider than 2e-10 of
+    the workspace (or than 2e-12 of its largest coordinate, if that is more, because of the rounding of doubles). Where
+    two obstacles touch, in a line or in a point, there is no passage. A part of a polygon that is thinner than that is
+    not an obstacle. Lines and points always are: no path crosses a line.
 
     Attributes:
-        scene: The world; its start and goal do not matter here.
+        scene: The scene; its start and goal are not used.
         clearance: Distance from obstacles and walls, in the scene's unit.
         region: The free polygons.
-        join: How grown obstacles end at their corners.
+        join: How corners of grown obstacles are joined.
     """
 
     scene: Scene
@@ -58,7 +58,7 @@ class FreeSpace:
         Args:
             scene: The world.
             clearance: Distance to keep from obstacles and walls: the robot's radius and a margin.
-            join: How grown obstacles end at their corners: ``mitre`` or ``round``.
+            join: How corners of grown obstacles are joined: ``mitre`` or ``round``.
 
         Raises:
             InvalidSetting: A clearance below zero, or no such join.
@@ -77,12 +77,12 @@ class FreeSpace:
 
     @property
     def walls(self) -> Box:
-        """The workspace (x_min, y_min, x_max, y_max); of a plane without end, as much as any path may need."""
+        """The workspace (x_min, y_min, x_max, y_max); in an unbounded plane, a box around all shortest paths."""
         return _walls(self.scene, self.clearance)
 
     @property
     def extent(self) -> float:
-        """Width of the workspace, the larger of the two."""
+        """The larger of the width and the height of the workspace."""
         return _extent(self.walls)
 
     @property
@@ -92,17 +92,17 @@ class FreeSpace:
 
     @property
     def hair(self) -> float:
-        """What lines and points are grown by at least."""
+        """Least distance by which lines and points are grown."""
         return HAIR * self.touch
 
     @checked
     def clearance_of(self, obstacle: shapely.Geometry) -> float:
-        """By how much an obstacle is grown, m: lines and points by a hair at least."""
+        """By how much an obstacle is grown, m; lines and points by at least ``hair``."""
         return self.clearance if obstacle.geom_type == "Polygon" else max(self.clearance, self.hair)
 
     @property
     def box(self) -> Box:
-        """The workspace inside its walls (x_min, y_min, x_max, y_max), smaller by the clearance."""
+        """The workspace (x_min, y_min, x_max, y_max) reduced by the clearance."""
         x_min, y_min, x_max, y_max = self.walls
         r = self.clearance
         return x_min + r, y_min + r, x_max - r, y_max - r
@@ -114,7 +114,7 @@ class FreeSpace:
 
     @cached_property
     def core(self) -> shapely.Geometry:
-        """What no path may meet: obstacles and walls without the skin that may be touched."""
+        """Obstacles and walls without their border, which may be touched: what no path may enter."""
         core = self.blocked.buffer(-self.touch, join_style="mitre")
         shapely.prepare(core)
         return core
@@ -125,27 +125,27 @@ class FreeSpace:
         return shapely.union_all(self.scene.obstacles)
 
     def holds(self, path: Array) -> bool:
-        """Whether a path (n, 2) is free of collisions: the exact test, on the whole of it and not on samples."""
+        """Whether a path (n, 2) is free of collisions, by an exact test of its whole length, not of samples."""
         line = _line(path)
         return bool(np.isfinite(path).all()) and not self.core.intersects(line)
 
     @checked
     def connects(self, start: Point, goal: Point) -> bool:
-        """Whether there is a way between two places that are free."""
+        """Whether there is a path between two free positions."""
         parts, ends = shapely.get_parts(self.region), shapely.points([start, goal])
         return bool((shapely.distance(parts[:, None], ends) <= self.touch).all(axis=1).any())
 
     def distance(self, path: Array) -> float:
-        """Distance of a path (n, 2) from the nearest obstacle as given, not grown; inf without obstacles."""
+        """Distance of a path (n, 2) from the nearest original (not grown) obstacle; inf without obstacles."""
         line = _line(path)
         return float(line.distance(self.solid)) if self.scene.obstacles else float("inf")
 
     @checked
     def check(self, role: str, point: Point) -> None:
-        """Make sure that the robot may be somewhere.
+        """Check that the robot may be at a position.
 
         Raises:
-            Blocked: It may not; the error names the nearest place that is free.
+            Blocked: It may not; the error names the nearest free position.
         """
         place = shapely.Point(point)
         if self.region.distance(place) <= self.touch:
@@ -168,10 +168,10 @@ class FreeSpace:
 
     @checked
     def nearly_connects(self, start: Point, goal: Point) -> float | None:
-        """A clearance that leaves a way between two places, although this space has none; None if none does.
+        """A smaller clearance with which there is a path between two positions; None if there is none.
 
-        It is smaller by half a percent, so that the obstacles grown by it lie within the clearance everywhere: if even
-        they leave no way, there is none.
+        It is smaller by half a percent, so that the obstacles grown by it lie within the exact clearance everywhere: if
+        there is no path even among these, there is none at the full clearance.
         """
         if not self.clearance:
             return None

@@ -1,7 +1,7 @@
 """Gaps without width, closed; and obstacles without width, left out: where the border of a region meets itself.
 
-Whether one may pass between two obstacles that touch, or between an obstacle and the wall it touches, must not depend
-on how the scene was written down. Here nobody may: a gap is a way only if it is wider than rounding.
+Whether there is a passage between two obstacles that touch, or between an obstacle and the wall it touches, must not
+depend on how the scene was written down. Here there is none: a gap is a passage only if it is wider than rounding.
 """
 
 from __future__ import annotations

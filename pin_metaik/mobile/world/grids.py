@@ -28,7 +28,7 @@ Unknown = Literal["blocked", "free"]
 @checked
 @dataclass(frozen=True, eq=False)
 class OccupancyGrid:
-    """Square cells that are free or occupied. Between occupied cells that touch at a corner there is no way.
+    """Square cells that are free or occupied. There is no passage between occupied cells that touch at a corner.
 
     Attributes:
         occupied: (rows, columns) row 0 is the lowest: cell (r, c) begins at (c, r) times the resolution.
@@ -51,12 +51,13 @@ class OccupancyGrid:
             )
         if not self.resolution * sum(self.occupied.shape) + abs(self.origin[0]) + abs(self.origin[1]) <= FARTHEST:
             raise InvalidGeometry(
-                f"an occupancy grid is within {FARTHEST:g}: {self.occupied.shape} cells of {self.resolution:g} are not"
+                f"an occupancy grid is within {FARTHEST:g} m; {self.occupied.shape} cells of "
+                f"{self.resolution:g} m are not"
             )
 
     @cached_property
     def polygons(self) -> tuple[shapely.Polygon, ...]:
-        """The occupied cells as as few polygons as possible; what lies beyond the corners of a turned grid too."""
+        """The occupied cells as as few polygons as possible; with the regions beyond the corners of a rotated grid."""
         parts = [self._placed(part) for part in _outlined(self.occupied)]
         if self.origin[2]:
             sheet = self._placed(self._sheet)
@@ -71,10 +72,10 @@ class OccupancyGrid:
 
     @checked
     def without_specks(self, cells: int) -> OccupancyGrid:
-        """The grid without specks: groups of fewer occupied cells, joined along edges or at corners.
+        """The grid without groups of fewer than ``cells`` occupied cells, joined along edges or at corners.
 
         Args:
-            cells: How many make an obstacle, at least 1.
+            cells: The least number of cells of an obstacle, at least 1.
 
         Raises:
             InvalidSetting: A number below 1.
@@ -109,10 +110,11 @@ def grid_of(
     """A grid from an array, row 0 the lowest.
 
     Args:
-        values: (rows, columns) cells above the threshold are occupied, those below zero (or NaN) unknown.
-        threshold: 0 suits masks; 65 the message ``nav_msgs/OccupancyGrid``, whose numbers are percents.
+        values: (rows, columns); cells above the threshold are occupied, cells below zero or NaN are unknown.
+        threshold: Cells above it are occupied: 0 for masks, 65 for the message ``nav_msgs/OccupancyGrid``, whose values
+            are percentages.
         unknown: Whether unknown cells are ``"blocked"`` or ``"free"``.
-        unknown_blocks: The same as True or False, as it was once given.
+        unknown_blocks: The older form of ``unknown``: True for ``"blocked"``, False for ``"free"``.
         resolution: Width of a cell in m.
         origin: Pose (x, y, yaw) of the lower left corner, in m and rad.
 
@@ -139,13 +141,14 @@ def read_grid(
     Args:
         path: The file.
         unknown: Whether unknown cells are ``"blocked"`` or ``"free"``.
-        unknown_blocks: The same as True or False, as it was once given.
-        threshold: Cells above it are occupied. Default: 0 for a ``.npy``; 99 for a ROS map, whose numbers are percents:
-            only what is certainly occupied, as for nav2's static layer. Maps of mode ``scale`` have cells between.
+        unknown_blocks: The older form of ``unknown``: True for ``"blocked"``, False for ``"free"``.
+        threshold: Cells above it are occupied. Default: 0 for a ``.npy``; 99 for a ROS map, whose values are
+            percentages: then only certainly occupied cells count, as in nav2's static layer (maps of mode ``scale``
+            have values between).
         resolution: Width of a cell of a ``.npy`` in m, default 1. A ROS map has its own.
 
     Raises:
-        InvalidGeometry: The file is missing, or is neither.
+        InvalidGeometry: The file is missing, or is not a grid.
         InvalidSetting: Unknown cells that are neither blocked nor free, or a resolution for a ROS map.
         MissingExtra: PyYAML or Pillow is not installed.
     """
@@ -158,7 +161,7 @@ def read_grid(
             return grid_of(values, threshold=threshold or 0.0, unknown=blocks, resolution=width)
         case ".yaml" | ".yml":
             if resolution is not None:
-                raise InvalidGeometry(f"{path} says itself how wide its cells are: leave out the resolution")
+                raise InvalidGeometry(f"{path} has its own resolution: leave out resolution")
             ros = read_ros_map(path)
             above = OCCUPIED - 1 if threshold is None else threshold
             return grid_of(ros.cells, threshold=above, unknown=blocks, resolution=ros.resolution, origin=ros.origin)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidGeometry
+from pin_metaik.files import read_bytes
 from pin_metaik.lookup import need
 
 COMMENT = re.compile(rb"#[^\r\n]*")
@@ -50,24 +52,25 @@ def read_image(path: Path) -> Pixels:
         InvalidGeometry: The file is missing or no image.
         MissingExtra: It needs Pillow, which is not installed.
     """
-    try:
-        data = path.read_bytes()
-    except OSError as reason:
-        raise InvalidGeometry(f"cannot read {path}: {reason.strerror}") from None
+    data = read_bytes(path, InvalidGeometry)
     if data[:2] in (b"P2", b"P5"):
         return Pixels(read_pgm(data, path)[:, :, None])
     need(f"reading {path}", "mobile", "PIL")
     from PIL import Image, UnidentifiedImageError
 
     try:
-        with Image.open(path, formats=FORMATS) as image:
+        with Image.open(BytesIO(data), formats=FORMATS) as image:  # which has no bytes that it only says it has
             if image.width * image.height * (1 if image.mode in GREY else 4) > MOST:
-                raise ValueError(f"{image.width} x {image.height} pixels are too many; {MOST:,} grey ones are not")
+                raise ValueError(
+                    f"{image.width} x {image.height} pixels are too many: at most {MOST:,} grey ones are read"
+                )
             return _pixels(image)
     except UnidentifiedImageError:
-        raise InvalidGeometry(f"{path} is not an image: a map is a PGM, a PNG or what else Pillow reads") from None
+        raise InvalidGeometry(
+            f"{path} is not an image: a map is a PGM, a PNG or another format that Pillow reads"
+        ) from None
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as reason:
-        raise InvalidGeometry(f"{path} is no image that can be read, or ends early: {reason}") from None
+        raise InvalidGeometry(f"{path} cannot be read as an image, or ends early: {reason}") from None
 
 
 def _pixels(image: Any) -> Pixels:

@@ -1,4 +1,4 @@
-"""Obstacles in, from whatever holds them: vertex lists, shapely, WKT, GeoJSON and files of the last two."""
+"""Reading obstacles: vertex lists, shapely geometries, WKT, GeoJSON, and files of the last two."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def read_obstacles(source: Any) -> tuple[BaseGeometry, ...]:
         source: A polygon as vertices (n, 2); a shapely geometry, or an object with ``__geo_interface__``; WKT, one
             geometry or one a line; a GeoJSON mapping; the path of a ``.geojson``, ``.json`` or ``.wkt`` file; or a
             sequence of any of these. Geometries of several parts become several obstacles; holes are kept; heights (z)
-            are dropped; a GeoJSON feature without a geometry is none.
+            are dropped; GeoJSON features without a geometry are ignored.
 
     Raises:
         InvalidGeometry: A polygon crosses itself, has no area, fewer than three vertices or numbers that are not
@@ -118,7 +118,7 @@ def _interface(source: Any, place: str) -> Mapping[str, Any] | None:
     except Exception as error:  # of anybody's class
         raise InvalidGeometry(f"{place} has a __geo_interface__ that cannot be read: {error}") from None
     if mapping is not None and not isinstance(mapping, Mapping):
-        raise InvalidGeometry(f"{place} has a __geo_interface__ that is no GeoJSON mapping: {shown(mapping)}")
+        raise InvalidGeometry(f"{place} has a __geo_interface__ that is not a GeoJSON mapping: {shown(mapping)}")
     return mapping
 
 

@@ -30,17 +30,17 @@ def random_scene(
     start: Point | None = None,
     goal: Point | None = None,
 ) -> Scene:
-    """A square workspace with convex polygons of 3 to 8 corners, and if asked for with concave ones of 5 to 9.
+    """A square workspace with random convex polygons of 3 to 8 corners and, with ``concave``, concave ones of 5 to 9.
 
     Args:
-        obstacles: How many.
+        obstacles: Number of obstacles.
         rng: Seed or generator; ``None`` is a fixed seed.
         size: Width of the workspace, in m.
         fill: Share of the workspace that the circles around the obstacles cover.
-        gap: Least distance between obstacles, and from them to start and goal, in m. Twice a robot's clearance lets it
-            through everywhere, if obstacles grow with round joins: mitred corners stick out further. A start or goal
-            in the pocket of a concave obstacle may be shut in all the same.
-        concave: Share of the obstacles, by chance, that are concave: stars with 5 to 9 corners.
+        gap: Least distance between obstacles, and from them to start and goal, in m. With twice the robot's clearance
+            it can pass everywhere, if obstacles are grown with round joins (mitred corners stick out further); but a
+            start or goal in the pocket of a concave obstacle may still be shut in.
+        concave: Probability that an obstacle is concave: a star with 5 to 9 corners.
         start: (x, y); default: near the lower left corner.
         goal: (x, y); default: near the upper right corner.
 
@@ -69,7 +69,9 @@ def random_scene(
                 placed.append(polygon)
                 break
         else:
-            raise InvalidSetting(f"only {i} of {obstacles} obstacles fit: fewer, a smaller fill, or a smaller gap")
+            raise InvalidSetting(
+                f"only {i} of {obstacles} obstacles fit: ask for fewer, a smaller fill or a smaller gap"
+            )
     return Scene(start, goal, tuple(placed[2:]), (0.0, 0.0, size, size), name)
 
 

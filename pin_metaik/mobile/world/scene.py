@@ -30,15 +30,15 @@ CLOSE = 0.75  # how alike a key of somebody's GeoJSON must be to one of ours to 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Where a robot is, where it shall go and what stands in its way; lengths in m (or any one unit).
+    """Start, goal and obstacles of a robot in the plane; lengths in m (or any one unit).
 
     Attributes:
         start: (x, y).
         goal: (x, y).
         obstacles: Polygons, lines and points; they may overlap or touch. Lines and points have no thickness and grow
-            with the robot's radius like all others. In: anything ``read_obstacles`` takes.
-        bounds: Walls (x_min, y_min, x_max, y_max) around the workspace, or None for a plane without end.
-        name: What to call it.
+            with the robot's radius like all others. Given as anything that ``read_obstacles`` accepts.
+        bounds: Walls (x_min, y_min, x_max, y_max) around the workspace, or None for an unbounded plane.
+        name: Its name.
 
     Raises:
         InvalidGeometry: A point is not two finite numbers, bounds are crossed, or a polygon is malformed.
@@ -59,7 +59,7 @@ class Scene:
 
     @property
     def box(self) -> tuple[float, float, float, float]:
-        """The bounds; without any, a box with room for every path around everything."""
+        """The bounds; without any, a box that contains every shortest path."""
         if self.bounds is not None:
             return self.bounds
         everything = shapely.union_all([shapely.MultiPoint([self.start, self.goal]), *self.obstacles])
@@ -69,11 +69,11 @@ class Scene:
 
     @checked
     def between(self, start: Any, goal: Any) -> Scene:
-        """The same world with another start and goal; None keeps the one there is."""
+        """The same scene with another start and goal; None keeps the present one."""
         return replace(self, start=self.start if start is None else start, goal=self.goal if goal is None else goal)
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain values, as a scene's JSON file has them; all but polygons without holes as GeoJSON."""
+        """Plain values, as in a scene's JSON file; polygons with holes, lines and points as GeoJSON."""
         return {
             "start": list(self.start),
             "goal": list(self.goal),
@@ -112,9 +112,8 @@ def load_scene(
 
     Raises:
         UnknownName: No such scene.
-        InvalidGeometry: The file is missing or malformed, or has a key that nobody would read; or nobody says where the
-            start or goal is.
-        InvalidSetting: Settings of grids, for a source that is no grid.
+        InvalidGeometry: The file is missing or malformed, or has an unknown key; or there is no start or goal.
+        InvalidSetting: Settings of grids, for a source that is not a grid.
     """
     path = Path(source)
     one_of("unknown", unknown, Unknown)
@@ -127,7 +126,7 @@ def load_scene(
     }
     if suffix not in GRIDS and any(said.values()):
         about = ", ".join(key for key, value in said.items() if value)
-        raise InvalidSetting(f"{about}: that is for an occupancy grid ({', '.join(GRIDS)}), and {source} is none")
+        raise InvalidSetting(f"{about}: only for an occupancy grid ({', '.join(GRIDS)}), which {source} is not")
     match suffix:
         case ".json" | ".geojson":
             return scene_of(_read(path), path.stem, start, goal)

@@ -19,7 +19,7 @@ def mechanism_names() -> list[str]:
 
 @checked
 def load_mechanism(name: str | Path) -> Mechanism:
-    """A mechanism of the catalogue by its name, or of a ``.toml`` file by its path.
+    """Load a mechanism by its name in the catalogue, or by the path of a ``.toml`` file.
 
     Raises:
         UnknownName: Neither a name of the catalogue nor a path.

@@ -182,7 +182,8 @@ def _geometry(
         ends = legs.wholes("base"), legs.wholes("platform")
         if len(ends[0]) != len(ends[1]):
             raise InvalidTable(
-                f"{legs.place}: base names {len(ends[0])} joints and platform {len(ends[1])}: one a leg each"
+                f"{legs.place}: base names {len(ends[0])} joints and platform {len(ends[1])}: each "
+                "names one for each leg"
             )
         pairs = tuple((b - 1, m - 1) for b, m in zip(*ends, strict=True))
     base = _side(content, "base", path, length, angle)

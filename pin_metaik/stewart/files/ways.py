@@ -11,6 +11,7 @@ import numpy as np
 from pin_metaik.arguments import checked
 from pin_metaik.arrays import Array
 from pin_metaik.errors import InvalidTarget
+from pin_metaik.files import read_csv
 from pin_metaik.output import writable
 from pin_metaik.stewart.kinematics.trajectory import Motion, Trajectory
 from pin_metaik.stewart.platform.poses import pose_at
@@ -23,9 +24,9 @@ DEGREE = radians(1.0)
 
 @checked
 def read_trajectory(path: str | Path, metres: float = 1.0, radian: float = DEGREE) -> Trajectory:
-    """A trajectory from a CSV file with a line of names: time, x, y, z and, where it turns, roll, pitch, yaw.
+    """Read a trajectory from a CSV file with a header: time, x, y, z and, if it rotates, roll, pitch, yaw.
 
-    The times are in s; columns may come in any order. Velocities are differences between neighbouring rows.
+    Times are in s; columns may be in any order. Velocities are differences between neighbouring rows.
 
     Args:
         path: The file.
@@ -33,14 +34,10 @@ def read_trajectory(path: str | Path, metres: float = 1.0, radian: float = DEGRE
         radian: Its unit of angles in rad; default: degrees.
 
     Raises:
-        InvalidTarget: It cannot be read, has other columns or no numbers, or times that do not ascend; the message
-            names the line.
+        InvalidTarget: It cannot be read, has other columns, values that are not numbers, or times that do not ascend;
+            the message names the line.
     """
-    try:
-        with Path(path).open(encoding="utf-8-sig", newline="") as file:
-            rows = list(csv.reader(file))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InvalidTarget(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from None
+    rows = read_csv(Path(path), InvalidTarget)
     names = [name.strip().lower() for name in rows[0]] if rows else []
     unknown = [name for name in names if name not in COLUMNS]
     missing = [name for name in NEEDED if name not in names]
@@ -74,13 +71,14 @@ def _numbers(path: str | Path, line: int, row: list[str], names: list[str]) -> l
 
 @checked
 def save_motion(motion: Motion, path: str | Path, metres: float = 1.0) -> Path:
-    """Write coordinates and rates of the legs along a trajectory to a CSV file: a row a sample.
+    """Write coordinates and rates of the legs along a trajectory to a CSV file, with a row for each sample.
 
-    The columns are time in s, the lengths d1 ... and rates v1 ... of the legs, nu, and the state of the pose. Of servos
-    they are the angles a1 ... and rates w1 ..., in degrees and degrees a second; nan where a rod does not reach.
+    The columns are time in s, the lengths d1 ... and rates v1 ... of the legs, nu, and the state of the pose. With
+    servos they are the angles a1 ... and rates w1 ... in degrees and degrees per second; nan where a rod does not
+    reach.
 
     Args:
-        motion: What ``follow`` found.
+        motion: The result of ``follow``.
         path: The file.
         metres: The unit of length to write in, m: 0.001 for mm.
 

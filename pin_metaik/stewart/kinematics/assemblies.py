@@ -44,15 +44,15 @@ SAME = 1e-6  # two poses nearer than this, in rad and in platform radii, are one
 
 @dataclass(frozen=True, eq=False)
 class Assemblies:
-    """The assemblies for one set of leg lengths; wherever an array of poses (s, 4, 4) is wanted it is one.
+    """The assemblies for one set of leg lengths; can be used like the array of their poses (s, 4, 4).
 
     Attributes:
         poses: (s, 4, 4), highest first.
-        complete: Whether these are all separate assemblies: as many solutions were found, real and complex, as there
-            can be. False where solutions meet (a leg length at which two assemblies become one), where the platform is
-            singular, or where paths were lost.
+        complete: Whether these are all assemblies: as many real and complex solutions were found as there can be. False
+            where solutions coincide (a leg length at which two assemblies become one), where the platform is singular,
+            or where paths of the continuation were lost.
         solutions: How many solutions were found, real and complex.
-        bound: How many there can be for this geometry, whatever the lengths; 0 for a singular mechanism.
+        bound: Largest number of solutions for this geometry with any lengths; 0 for a singular mechanism.
     """
 
     poses: Array
@@ -87,27 +87,30 @@ class Start:
 
 @checked
 def all_forward(geometry: Geometry, coordinates: ArrayLike, rng: int | np.random.Generator | None = 0) -> Assemblies:
-    """Every assembly: the poses at which six legs have these lengths, or their servos angles; there are 0 ... 40.
+    """All assemblies: the poses at which six legs have these lengths, or their servos these angles; 0 to 40 of them.
 
-    The highest comes first. A platform of slides whose joints lie in planes has a mirror image below the base for every
-    assembly above it. With servos these are the assemblies of its rods from the tips of its horns, on either branch.
+    The highest comes first. A platform with linear actuators and planar base and platform joints has, for every
+    assembly above the base, its mirror image below. With servos these are the assemblies of the rods from the tips of
+    the horns, on either branch.
 
     Args:
         geometry: A platform with six legs.
         coordinates: (6,), lengths in m or angles in rad.
-        rng: Seed or generator of detours and random starts, where the first paths do not find all; the same seed gives
-            the same poses.
+        rng: Seed or generator of the detours and random starts that are tried where the first paths do not find all
+            solutions; the same seed gives the same poses.
 
     Returns:
         The poses; ``complete`` says whether none is missing.
 
     Raises:
         InvalidConfiguration: Coordinates of the wrong shape or not finite, or lengths that are not above zero.
-        InvalidSetting: Fewer than six legs: their poses are not separate.
-        InvalidGeometry: A singular mechanism: its platform moves while the legs are held.
+        InvalidSetting: Fewer than six legs: their poses form a continuum.
+        InvalidGeometry: A singular mechanism: its platform can move while the legs are held.
     """
     if geometry.n < MOST_LEGS:
-        raise InvalidSetting(f"{geometry.n} legs leave {MOST_LEGS - geometry.n} freedoms: their poses are not separate")
+        raise InvalidSetting(
+            f"{geometry.n} legs leave {MOST_LEGS - geometry.n} degrees of freedom: assemblies need six legs"
+        )
     d = as_coordinates(geometry, coordinates)
     if len(d) != 1:
         raise InvalidConfiguration(f"all assemblies are found for one set of coordinates, got {len(d)}")

@@ -28,7 +28,7 @@ SPAN = 100.0  # the best characteristic length is looked for up to so many times
 
 @dataclass(frozen=True)
 class Dexterity:
-    """How a Jacobian becomes one number.
+    """How the dexterity of a Jacobian is measured: norm and characteristic length.
 
     Attributes:
         norm: ``"frobenius"``, ``||J|| = sqrt(tr(J J') / 6)``, or ``"two"``, the largest singular value.
@@ -50,7 +50,7 @@ class Dexterity:
 
     @property
     def code(self) -> int:
-        """The norm as the compiled loops know it."""
+        """The code of the norm in the compiled functions."""
         return NORMS.index(self.norm)
 
 
@@ -59,7 +59,7 @@ DEFAULT = Dexterity()
 
 @checked
 def characteristic_length(geometry: Geometry, poses: PoseLike, dexterity: Dexterity = DEFAULT) -> float:
-    """The length L in m that these settings mean for these poses.
+    """The characteristic length L, m, that these settings give for these poses.
 
     Raises:
         InvalidTarget: Not poses.
@@ -78,7 +78,7 @@ def best_length(geometry: Geometry, poses: PoseLike, norm: Norm = "frobenius") -
     """The one characteristic length in m with the greatest mean nu over these poses.
 
     At a single pose, for the Frobenius norm and six legs, that is ``L^4 = |J2|^2 |X1|^2 / (|J1|^2 |X2|^2)`` with
-    ``J = [J1, J2]`` and ``J^-1 = [X1; X2]``. The radius of the platform where every pose is singular.
+    ``J = [J1, J2]`` and ``J^-1 = [X1; X2]``. If every pose is singular it is the radius of the platform.
     """
     one_of("norm", norm, Norm)
     T = as_poses(poses)
@@ -93,7 +93,7 @@ def best_length(geometry: Geometry, poses: PoseLike, norm: Norm = "frobenius") -
 
 @checked
 def conditioning(geometry: Geometry, poses: PoseLike, dexterity: Dexterity = DEFAULT) -> Array:
-    """The local conditioning index nu (k,) at poses, 0 ... 1 and 0 where J is singular; one number for a single pose.
+    """The local conditioning index nu (k,) at poses, 0 to 1, and 0 where J is singular; one number for a single pose.
 
     With fewer than six legs J has a row a leg, and nu = n / sqrt(tr(J J') tr((J J')^-1)).
 

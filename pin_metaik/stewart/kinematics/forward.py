@@ -40,7 +40,7 @@ class Forward:
 
     Attributes:
         poses: (k, 4, 4) poses of P in the base frame; where not solved, the last one tried.
-        states: A ``ForwardStatus`` each (k,).
+        states: (k,) a ``ForwardStatus`` for each.
         errors: Largest error of the length of a leg, or of a rod, m (k,).
         iterations: Newton steps taken (k,).
     """
@@ -70,11 +70,11 @@ class Forward:
 
 @checked
 def forward(geometry: Geometry, coordinates: ArrayLike, start: PoseLike | None = None) -> Forward:
-    """The pose nearest to the start, in Newton's sense, at which the legs have these lengths or their servos angles.
+    """A pose at which the legs have these lengths, or their servos these angles, by Newton's method from a start.
 
-    On which branch a servo is then, its angle does not say.
+    The branch of a servo follows from the pose found; its angle does not determine it.
 
-    With fewer than six legs the coordinates leave freedoms: steps are the shortest ones, a radian counting as a
+    With fewer than six legs the pose is not determined: each step is the shortest one, with a radian weighted as one
     platform radius.
 
     Args:
@@ -84,7 +84,7 @@ def forward(geometry: Geometry, coordinates: ArrayLike, start: PoseLike | None =
 
     Raises:
         InvalidConfiguration: Coordinates of the wrong shape or not finite, or lengths that are not above zero.
-        InvalidTarget: The start is not a pose, or starts are not as many as the coordinates.
+        InvalidTarget: The start is not a pose, or there are not as many starts as rows of coordinates.
     """
     q = as_coordinates(geometry, coordinates)
     T = level(geometry, q) if start is None else as_poses(start)

@@ -16,8 +16,8 @@ from pin_metaik.stewart.platform.poses import PoseLike, as_poses, is_many
 def leg_distances(geometry: Geometry, poses: PoseLike) -> Array:
     """Distance in m between the axes of each pair of legs in ``geometry.pairs``: (k, p), or (p,) for a single pose.
 
-    Legs that share a joint touch there and are no pair. Two legs of diameter D are clear of each other at more than D.
-    Of legs that are moved by servos the rods count, not the horns; NaN at a pose that one of them does not reach.
+    Legs that share a joint touch there and are not a pair. Two legs of diameter D are clear of each other at more than
+    D. With servos the distances are those of the rods, not of the horns; NaN at a pose that one of them does not reach.
 
     Raises:
         InvalidTarget: Not poses.

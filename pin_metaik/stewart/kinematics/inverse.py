@@ -22,21 +22,21 @@ def inverse(geometry: Geometry, poses: PoseLike, branches: int | tuple[int, ...]
     Args:
         geometry: The platform.
         poses: ``pin.SE3`` or (4, 4) for one pose, (k, 4, 4) or a list for many.
-        branches: Of servos, instead of the geometry's own: 1 or -1, for all legs or for each.
+        branches: Branches of servos instead of the geometry's own: 1 or -1, for all legs or for each.
 
     Returns:
-        The legs at each of the poses, a row each; ``reached`` says at which every rod reaches its platform joint, and
-        ``missing`` what is missing.
+        The legs, with a row for each pose; ``reached`` says at which poses every rod reaches its platform joint, and
+        ``missing`` by how much it does not.
 
     Raises:
         InvalidTarget: Not poses.
-        InvalidSetting: Branches of legs that are slides.
-        InvalidGeometry: Other branches than 1 and -1, or not one for each leg.
+        InvalidSetting: Branches for linear actuators, which have none.
+        InvalidGeometry: Branches other than 1 and -1, or not one for each leg.
     """
     actuation = geometry.actuation
     if branches is not None:
         if geometry.servos is None:
-            raise InvalidSetting("legs that are slides have no branches; those of servos have two each")
+            raise InvalidSetting("linear actuators have no branches; servos have two each")
         actuation = ServoLegs(replace(geometry.servos, branches=branches))
     return actuation.links(geometry.b, vectors_at(geometry, as_poses(poses)))
 
@@ -55,7 +55,7 @@ def vectors_at(geometry: Geometry, T: Array) -> Array:
 
 @checked
 def leg_vectors(geometry: Geometry, poses: PoseLike) -> Array:
-    """Legs from base to platform joint, in the base frame, m: (k, n, 3); of servos, from the shaft.
+    """Vectors of the legs from base to platform joint, in the base frame, m: (k, n, 3); with servos, from the shaft.
 
     Raises:
         InvalidTarget: Not poses.
@@ -65,7 +65,7 @@ def leg_vectors(geometry: Geometry, poses: PoseLike) -> Array:
 
 @checked
 def leg_lengths(geometry: Geometry, poses: PoseLike) -> Array:
-    """Lengths d_i = |v_i| of the legs, m: (k, n); (n,) for a single pose. Of servos, from the shaft; see ``inverse``.
+    """Lengths d_i = |v_i| of the legs, m: (k, n); (n,) for a single pose. With servos, from the shaft; see ``inverse``.
 
     Args:
         geometry: The platform.

@@ -16,11 +16,12 @@ from pin_metaik.stewart.platform.poses import PoseLike, as_poses, is_many
 def velocity_equation(geometry: Geometry, poses: PoseLike) -> tuple[Array, Array]:
     """A (k, n, 6) and B (k, n) with ``A (v, omega) = B q_dot`` (Gosselin and Angeles 1990); without k for one pose.
 
-    Row i of A is ``[z_i, R m_i x z_i]`` with the unit link z_i: the rate at which the platform would stretch it. B is
-    the rate at which its actuator does: 1 for a slide, and for a servo the horn times the transmission. Where an entry
-    of B is 0, the leg is in a singularity of the first kind: its rod is in line with its horn, as seen along the axis,
-    the platform cannot move on that way and both branches meet. Where det A = 0, the platform is in one of the second
-    kind: it can move while all actuators are held. NaN in B for a rod that does not reach.
+    Row i of A is ``[z_i, R m_i x z_i]`` with the unit vector z_i of the link: A (v, omega) is the rate at which the
+    platform would stretch the link, B q_dot the rate at which its actuator moves along it. B is 1 for a linear
+    actuator, and for a servo its horn times the transmission. Where an entry of B is 0, the leg is in a singularity of
+    the first kind: seen along the axis, its rod is in line with its horn, where both branches meet and the platform
+    cannot move further. Where det A = 0, the platform is in a singularity of the second kind: it can move while all
+    actuators are held. NaN in B for a rod that does not reach.
 
     Raises:
         InvalidTarget: Not poses.
@@ -43,10 +44,10 @@ def _equation(geometry: Geometry, T: Array) -> tuple[Array, Array]:
 def jacobian(geometry: Geometry, poses: PoseLike) -> Array:
     """J (k, n, 6) with ``q_dot = J (v, omega)``, Eq. 4; (n, 6) for a single pose.
 
-    v is the velocity of P and omega the angular velocity, both in the base frame, in m/s and rad/s. With slides q_dot
-    are the rates of their lengths, in m/s: row i is ``[z_i, R m_i x z_i]`` with the unit leg z_i; zeros for a leg of no
-    length, which has no direction. With servos they are the rates of their angles, in rad/s; infinite where a rod is in
-    line with its horn, NaN where it does not reach.
+    v is the velocity of P and omega the angular velocity, both in the base frame, in m/s and rad/s. With linear
+    actuators q_dot are the rates of their lengths, in m/s: row i is ``[z_i, R m_i x z_i]`` with the unit vector z_i of
+    the leg; zeros for a leg of length zero. With servos they are the rates of their angles, in rad/s; infinite where a
+    rod is in line with its horn, NaN where it does not reach.
 
     Raises:
         InvalidTarget: Not poses.
@@ -59,10 +60,11 @@ def jacobian(geometry: Geometry, poses: PoseLike) -> Array:
 
 @checked
 def transmission(geometry: Geometry, poses: PoseLike) -> Array:
-    """How square each rod is to its horn, 0 ... 1 (k, n); (n,) for one pose. Slides have 1 always.
+    """Transmission of each servo to its rod, 0 to 1, (k, n); (n,) for one pose. Linear actuators always have 1.
 
-    It is the cosine of the angle between the rod and the way of the tip of its horn: at 1 the horn pushes straight
-    along its rod, at 0 the leg is in a singularity of the first kind. NaN for a rod that does not reach.
+    It is the cosine of the angle between the rod and the direction in which the tip of its horn moves: at 1 the horn
+    pushes straight along its rod, at 0 the leg is in a singularity of the first kind. NaN for a rod that does not
+    reach.
 
     Raises:
         InvalidTarget: Not poses.

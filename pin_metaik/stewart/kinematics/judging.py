@@ -34,7 +34,7 @@ def arguments_of(geometry: Geometry, limits: Limits | None) -> Arguments:
     """The arguments of the loops; without limits every pose is allowed that the legs can reach.
 
     Raises:
-        InvalidGeometry: Limits of another kind of legs, or a home that gives a joint no axis.
+        InvalidGeometry: Limits of the other kind of legs, or a ``home`` at which a joint has no axis.
     """
     base, platform_anchors, pairs = geometry.arrays
     servos = _servo_rows(geometry, limits)
@@ -58,7 +58,7 @@ def judge_poses(geometry: Geometry, limits: Limits, poses: PoseLike) -> NDArray[
 
     Raises:
         InvalidTarget: Not poses.
-        InvalidGeometry: Limits of another kind of legs, or a home that gives a joint no axis.
+        InvalidGeometry: Limits of the other kind of legs, or a ``home`` at which a joint has no axis.
     """
     return judged(geometry, limits, as_poses(poses), geometry.platform_radius, 0)[0]
 

@@ -28,7 +28,7 @@ class Trajectory:
     """Poses of P in the base frame at ascending times.
 
     Attributes:
-        times: In s (k,), k >= 2.
+        times: (k,) in s, k >= 2.
         poses: (k, 4, 4).
         twists: Velocity of P in m/s and angular velocity in rad/s, both in the base frame (k, 6).
 
@@ -57,7 +57,7 @@ class Trajectory:
     @classmethod
     @checked
     def through(cls, times: ArrayLike, poses: PoseLike) -> Trajectory:
-        """Through poses (k, 4, 4) at times (k,) in s; twists are differences between the neighbours of each pose.
+        """A trajectory through poses (k, 4, 4) at times (k,) in s; twists are central differences of the poses.
 
         Raises:
             InvalidTarget: As for the class.
@@ -68,7 +68,7 @@ class Trajectory:
 
     @checked
     def at(self, times: ArrayLike) -> Array:
-        """Poses (j, 4, 4) at times (j,) in s: between two samples along the straight line and the shortest turn."""
+        """Poses (j, 4, 4) at times (j,) in s, interpolated along straight lines and shortest rotations."""
         given = array(
             "times", np.atleast_1d(array("times", times, "...", error=InvalidTarget)), "j", error=InvalidTarget
         )
@@ -83,7 +83,7 @@ class Trajectory:
 
 @checked
 def straight(start: PoseLike, end: PoseLike, seconds: float, samples: int = 101) -> Trajectory:
-    """From rest to rest along a straight line, turning about one axis, in quintic time.
+    """A trajectory from rest to rest along a straight line, turning about one axis, with a quintic time law.
 
     Args:
         start: First pose.
@@ -119,12 +119,13 @@ class Motion:
     Attributes:
         geometry: The platform.
         trajectory: The poses over time.
-        coordinates: Of the legs (k, n): lengths in m, or angles of servos in rad, NaN where a rod does not reach.
-        rates: Of the legs, m/s or rad/s (k, n).
+        coordinates: Coordinates of the legs (k, n): lengths in m, or servo angles in rad, NaN where a rod does not
+            reach.
+        rates: Rates of the coordinates, m/s or rad/s (k, n).
         nu: Local conditioning index (k,); 0 where singular.
-        states: A ``PoseState`` each (k,): the limits, and which side of a singularity.
+        states: (k,) a ``PoseState`` for each: whether the limits allow it, and on which side of a singularity it is.
         length: Characteristic length of nu, m.
-        speed: The fastest that a leg may be, m/s or rad/s; None if that is not limited.
+        speed: Largest rate of a leg, m/s or rad/s; None if not limited.
     """
 
     geometry: Geometry
@@ -138,19 +139,19 @@ class Motion:
 
     @property
     def too_fast(self) -> NDArray[np.bool_]:
-        """At which poses a leg is faster than it may be (k,)."""
+        """(k,) at which poses a leg is faster than its limit."""
         limit = np.inf if self.speed is None else self.speed
         fast: NDArray[np.bool_] = np.abs(self.rates).max(axis=1) > limit * (1.0 + 1e-12)
         return fast
 
     @property
     def fastest(self) -> float:
-        """The greatest rate of a leg at a sample that it reaches, m/s or rad/s; 0 if it reaches none."""
+        """The greatest rate of a leg at the samples that are reached, m/s or rad/s; 0 if none is."""
         return float(np.abs(self.rates).max(initial=0.0, where=~np.isnan(self.rates)))
 
     @property
     def least_seconds(self) -> float | None:
-        """How long this way must take so that no leg is too fast at a sample, s; None without a limit on speed."""
+        """Least duration of this path at which no leg is too fast at a sample, s; None without a limit on speed."""
         if self.speed is None:
             return None
         times = self.trajectory.times
@@ -158,18 +159,18 @@ class Motion:
 
     @property
     def reached(self) -> NDArray[np.bool_]:
-        """Which poses the limits allow (k,)."""
+        """(k,) which poses the limits allow."""
         reached: NDArray[np.bool_] = (self.states >= PoseState.POSITIVE) & (self.states <= PoseState.SINGULAR)
         return reached
 
     @property
     def lengths(self) -> Array:
-        """Lengths of the legs, m (k, n): the coordinates of slides."""
+        """Lengths of the legs, m (k, n): the coordinates of linear actuators."""
         return self.coordinates
 
     @property
     def stroke(self) -> Array:
-        """How far each leg travels between its least and greatest coordinate, m or rad (n,)."""
+        """Difference (n,) between the greatest and the least coordinate of each leg, m or rad."""
         stroke: Array = np.ptp(self.coordinates, axis=0)
         return stroke
 
@@ -182,7 +183,7 @@ def follow(
 
     Args:
         geometry: The platform.
-        trajectory: The way.
+        trajectory: The trajectory.
         limits: Limits of the legs; without them every pose is allowed.
         dexterity: How to measure nu.
     """

@@ -21,22 +21,22 @@ from pin_metaik.watching import Watch
 @checked
 @dataclass(frozen=True)
 class Mechanism:
-    """A named platform with everything that is asked about it.
+    """A named platform with its limits and the settings of its analysis and design.
 
     Attributes:
         name: Its name.
         geometry: Joints and legs.
-        limits: Limits of the legs: ``LegLimits`` for slides, ``ServoLimits`` for servos.
-        grid: Where its workspace is looked for.
+        limits: Limits of the legs: ``LegLimits`` for linear actuators, ``ServoLimits`` for servos.
+        grid: Grid of poses for its workspace.
         dexterity: How its dexterity is measured.
-        task: How it is designed; None for a mechanism that is only analysed.
+        task: Settings of its design; None for a mechanism that is only analysed.
         unit: The unit of length its file is written in: m, cm or mm. Everything here is in m.
-        description: A sentence on it.
-        source: Where it is from.
+        description: A sentence about it.
+        source: Where its numbers were published.
 
     Raises:
         InvalidSetting: No name, or no unit of that name.
-        InvalidGeometry: Limits of another kind of legs.
+        InvalidGeometry: Limits of the other kind of legs.
     """
 
     name: str
@@ -58,12 +58,12 @@ class Mechanism:
 
     @property
     def metres(self) -> float:
-        """How many m one of its unit of length is."""
+        """Its unit of length in m."""
         return float(LENGTHS[self.unit].factor)
 
     @property
     def coordinate(self) -> Coordinate:
-        """How the coordinates of its legs are shown: lengths in its unit, or angles of servos in degrees."""
+        """How coordinates of its legs are displayed: lengths in its unit, or angles of servos in degrees."""
         word = self.geometry.actuation.words.coordinate
         if self.geometry.servos is None:
             return Coordinate(word, self.unit, self.metres)

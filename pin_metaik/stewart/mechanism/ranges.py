@@ -26,20 +26,20 @@ ANGLES_EACH = ("base_angles", "platform_angles", "directions")
 
 @dataclass(frozen=True)
 class Ranges:
-    """The free and the fixed dimensions of a platform. Lengths in m, angles in rad; None: as the mechanism has it.
+    """Ranges of the free dimensions of a platform, in m and rad; None: fixed at the mechanism's value.
 
     Attributes:
         base_radius: rb.
         platform_radius: rm.
-        base_angles: One for each base joint. Where one goes round the circle, its servos turn with it.
+        base_angles: One for each base joint. When a joint moves on the circle, its servos turn with it.
         platform_angles: One for each platform joint.
         shortest: Length of a retracted leg.
         longest: Length of an extended leg.
-        base: x, y and z of each base joint, for joints anywhere; a circle is given up for them.
+        base: x, y and z of each base joint as a point, which need then not be on a circle.
         platform: x, y and z of each platform joint, likewise, in the platform's frame.
-        horn: Of servos: the length of all horns.
-        rod: Of servos: the length of all rods.
-        directions: Of servos: where each horn points at angle 0 with its base joint where the mechanism has it.
+        horn: With servos: the length of all horns.
+        rod: With servos: the length of all rods.
+        directions: With servos: direction of each horn at angle 0, with its base joint as in the mechanism.
 
     Raises:
         InvalidBounds: A range that is not two finite numbers, the lower first; a length that may not be above zero.
@@ -137,7 +137,7 @@ class Variables:
             for name in (f"{side}_radius", f"{side}_angles"):
                 if getattr(ranges, name) is not None:
                     raise InvalidBounds(
-                        f"the joints of the {side} are anywhere: give {side} ranges of x, y, z, not {name}"
+                        f"the joints of the {side} are points: give {side} ranges of x, y, z, not {name}"
                     )
         ends, shapes = [], {}
         for name, value in own.items():

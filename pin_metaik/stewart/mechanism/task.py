@@ -26,24 +26,25 @@ class DesignTask:
     reached and V their volume. With several orientations, V is the mean over them; at a single position, V / cube^3 is
     the share of the orientations.
 
-    Designs with joints closer than ``joint_gap``, legs whose shortest is longer than their longest, a workspace that is
-    empty or smaller than ``least_workspace``, or a singularity in it are never better than one without.
+    A design with joints closer than ``joint_gap``, with legs that are longer retracted than extended, with a workspace
+    that is empty or smaller than ``least_workspace``, or with a singularity in it is infeasible, and always worse than
+    a feasible one.
 
     Attributes:
-        ranges: What may change.
+        ranges: Ranges of the dimensions that may change.
         index: ``"gdi"`` or ``"lci"``.
-        threshold: Of nu, for the index ``"lci"``.
-        weights: Of dexterity and workspace. The paper prints 78 % and 12 %; the second is read as 22 %.
+        threshold: Least nu of a dexterous pose, for the index ``"lci"``.
+        weights: Weights of dexterity and workspace. The paper prints 78 % and 12 %; the second is read as 22 %.
         cube: Side in m of a cube whose volume counts as 1. The paper does not say how it made volumes comparable;
             None: twice the longest stroke within the ranges; with servos, four horns.
-        least_workspace: What V / cube^3 must reach. With much weight on dexterity the best workspace may otherwise be a
-            speck: for stroke 150 and the paper's weights one of 6 cm3 beats 2800.
+        least_workspace: Lower bound of V / cube^3. Without it, and with much weight on dexterity, the best workspace
+            may be tiny: for stroke 150 and the paper's weights one of 6 cm3 beats one of 2800 cm3.
         joint_gap: Least distance between the centres of neighbouring joints, m.
-        grid: Poses on which designs are compared. It is coarse: a design is looked at a few thousand times.
+        grid: Poses on which designs are compared. It is coarse, because thousands of designs are evaluated.
         algorithm: A metaheuristic's name or object; the default is the paper's swarm of 60.
-        evaluations: How many designs to look at; the default is the paper's 60 generations of 60.
-        seed: Of every random choice.
-        from_current: Whether the search starts from the current mechanism, as well as from random designs.
+        evaluations: How many designs to evaluate; the default is the paper's 60 generations of 60.
+        seed: Seed of every random choice.
+        from_current: Whether the current mechanism is one of the designs that the search starts from.
 
     Raises:
         InvalidSetting: A weight below zero, both zero, or another setting outside its range.

@@ -1,7 +1,7 @@
 """The mechanism in Pinocchio: an open tree from its URDF, and a ``PointAnchorConstraintModel`` for each loop.
 
-Everything here is known in closed form elsewhere in this package; it is here for dynamics, and as a check by somebody
-else's code. Closed form is what grids and designs use.
+Everything here is known in closed form elsewhere in this package, which is what grids and designs use; this model is
+for dynamics, and an independent check by Pinocchio.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ STEPS = 50
 
 @dataclass(frozen=True, eq=False)
 class ClosedModel:
-    """A mechanism in Pinocchio.
+    """A mechanism as a Pinocchio model with loop constraints.
 
     Attributes:
         mechanism: The mechanism that it models.
         model: The tree: a free-flyer for the platform (7 of q, 6 of v), then three joints a leg.
-        closures: One a leg: its end on the platform, 3 equations each.
+        closures: One for each leg, of 3 equations: its end is at its joint of the platform.
     """
 
     mechanism: Mechanism
@@ -45,7 +45,7 @@ class ClosedModel:
 
     @checked
     def leg(self, i: int) -> list[pin.JointModel]:
-        """Joints of leg i, counted from 0: about x and about y of what carries its link, then its actuator."""
+        """Joints of leg i, counted from 0: two turns of its link, about x and about y, then its actuator."""
         if not 0 <= i < self.mechanism.geometry.n:
             raise InvalidSetting(f"leg i is 0 to {self.mechanism.geometry.n - 1}, got {i}")
         actuator = "length" if self.mechanism.geometry.servos is None else "servo"  # as the URDF has it
@@ -54,7 +54,7 @@ class ClosedModel:
 
     @property
     def actuators(self) -> list[int]:
-        """Columns of v that are the rates of the slides or servos (n)."""
+        """Indices (n,) into v of the rates of the linear actuators or servos."""
         return [self.leg(i)[2].idx_v for i in range(self.mechanism.geometry.n)]
 
     @checked
@@ -62,7 +62,7 @@ class ClosedModel:
         """The configuration q (nq,) at a pose, in closed form: the direction of a link is Rx(a) Ry(b) z.
 
         Raises:
-            InvalidTarget: Not a pose, or one that a rod does not reach.
+            InvalidTarget: Not a pose, or a pose that a rod does not reach.
         """
         T = one_pose(pose)
         actuation = self.mechanism.geometry.actuation
@@ -88,7 +88,7 @@ class ClosedModel:
 
     @checked
     def residual(self, q: ArrayLike) -> tuple[Array, Array]:
-        """How far the loops are open, m (3 n,), and its derivative by v (3 n, nv).
+        """Residual of the loop closures, m (3 n,), and its derivative by v (3 n, nv).
 
         Raises:
             InvalidConfiguration: Not a configuration of the model.
@@ -109,11 +109,11 @@ class ClosedModel:
         """The pose (4, 4) at which the loops close with these lengths in m, or angles in rad (n,), by Newton.
 
         Returns:
-            The pose; None if it finds none.
+            The pose; None if Newton does not converge.
 
         Raises:
             InvalidConfiguration: Not n finite coordinates.
-            InvalidTarget: The start is no pose, or one that a rod does not reach.
+            InvalidTarget: The start is not a pose, or is one that a rod does not reach.
         """
         held = array(f"{self.mechanism.coordinate.word}s", coordinates, len(self.actuators), error=InvalidConfiguration)
         q = self.configuration(start)
@@ -145,7 +145,7 @@ class ClosedModel:
 
 @checked
 def closed_model(mechanism: Mechanism) -> ClosedModel:
-    """A mechanism in Pinocchio, its loops closed where the ends of legs and platform of its URDF belong together."""
+    """A mechanism as a Pinocchio model, with constraints that close its loops at the platform joints."""
     model = pin.buildModelFromXML(to_urdf(mechanism))
     closures = []
     for i in range(1, mechanism.geometry.n + 1):

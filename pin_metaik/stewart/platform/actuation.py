@@ -1,4 +1,4 @@
-"""How the legs of a platform are actuated: the protocol of a leg, and legs that are slides.
+"""How the legs of a platform are actuated: the protocol of a leg, and legs that are linear actuators.
 
 Every leg ends in a straight link between two joints. The link of a slide begins in the base joint and changes its
 length; that of a servo is a rod of fixed length, which begins at the tip of a horn. Whatever is said about a platform
@@ -31,17 +31,18 @@ class Words(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Links:
-    """The legs of a platform at poses: the answer of inverse kinematics. Arrays are in the base frame.
+    """The result of inverse kinematics: the legs of a platform at k poses. Vectors are in the base frame.
 
     Attributes:
         coordinates: q of each leg (k, n): lengths in m or servo angles in rad; NaN where the leg cannot reach.
-        starts: Where the links begin, m (k, n, 3): base joints, or tips of horns.
-        vectors: The links from there to the platform joints, m (k, n, 3). Of a rod that cannot reach: the way it would
-            have to go, from the tip of the horn at its nearest.
-        pushes: How fast the actuator moves the platform joint along the link (k, n): 1 for a slide; for a servo, in
-            m/rad, its horn times the transmission, below zero where it pulls. NaN where the leg cannot reach.
-        transmission: How square each link is to what moves it, 0 ... 1 (k, n), likewise; 1 for a slide.
-        missing: Missing length of a link, m (k, n); below zero if it is too long; 0 where it reaches.
+        starts: First points of the links, m (k, n, 3): base joints, or tips of horns.
+        vectors: Vectors from there to the platform joints, m (k, n, 3). For a rod that cannot reach: from the horn's
+            tip where it is nearest to the platform joint.
+        pushes: Velocity along the link per rate of the actuator (k, n): 1 for a slide; for a servo, in m/rad, its horn
+            times the transmission, negative where it pulls. NaN where the leg cannot reach.
+        transmission: Cosine (k, n), 0 ... 1, of the angle between a rod and the motion of its horn's tip; 1 for a
+            slide. NaN where the leg cannot reach.
+        missing: By how much a link is too short, m (k, n); negative if it is too long; 0 where it reaches.
     """
 
     coordinates: Array

@@ -35,20 +35,21 @@ class Geometry:
     """A general Stewart platform: the joints of both sides and the legs between them. Lengths in m, angles in rad.
 
     ``Geometry(rb, rm, base_angles, platform_angles, legs)`` has its joints on circles; ``Geometry.of_joints`` takes
-    points. One side may be of one kind and one of the other.
+    points. One side may have its joints on a circle and the other as points.
 
     Attributes:
-        base_radius: rb, of the fixed circle. Of joints anywhere: how far they are from their middle, the root mean
-            square.
-        platform_radius: rm, of the moving circle, likewise.
-        base_angles: Of the joints B1, B2 ... on the fixed circle: ascending, within one turn; none for joints anywhere.
-        platform_angles: Of the joints M1, M2 ... on the moving circle, likewise.
+        base_radius: rb, radius of the fixed circle. For joints given as points: root mean square distance from their
+            mean.
+        platform_radius: rm, radius of the moving circle, likewise.
+        base_angles: Angles of the joints B1, B2 ... on the fixed circle, ascending, within one turn; empty for joints
+            given as points.
+        platform_angles: Angles of the joints M1, M2 ... on the moving circle, likewise.
         legs: The (base joint, platform joint) of each of the 3 to 6 legs, counted from 0.
-        reference: The point P that poses place, in the frame that the platform's joints are given in; the centre of its
-            circle if not given.
-        base: The joints B1, B2 ... as points x, y, z, at any heights; None: they are on a circle.
+        reference: The point P whose pose is given by poses, in the frame in which the platform's joints are given;
+            default: the centre of its circle.
+        base: The joints B1, B2 ... as points x, y, z; None: they are on a circle.
         platform: The joints M1, M2 ... likewise, in the platform's frame.
-        servos: A servo for each leg, with its shaft in the base joint; None: the legs are slides.
+        servos: A servo for each leg, with its shaft at the base joint; None: the legs are linear actuators.
 
     Raises:
         InvalidGeometry: A radius that is not above zero, angles out of order, joints in one place, a leg to a joint
@@ -86,14 +87,15 @@ class Geometry:
         reference: ArrayLike = (0.0, 0.0, 0.0),
         servos: Servos | None = None,
     ) -> Geometry:
-        """A platform with its joints anywhere.
+        """A platform with its joints given as points.
 
         Args:
             base: B1, B2 ... in the base frame, m (joints, 3).
             platform: M1, M2 ... in the platform frame, m (joints, 3).
-            legs: Which joins which; default: the first to the first, the second to the second ...
-            reference: The point P that poses place, in the platform frame, m (3,).
-            servos: What moves the legs, if they are not slides.
+            legs: The (base joint, platform joint) of each leg; default: the first to the first, the second to the
+                second ...
+            reference: The point P whose pose is given by poses, in the platform frame, m (3,).
+            servos: The servos, if the legs are rods moved by servos.
 
         Raises:
             InvalidGeometry: Joints or legs that cannot be those of a platform.
@@ -103,7 +105,9 @@ class Geometry:
             for name, joints in (("base", base), ("platform", platform))
         ]
         if legs is None and len(sides[0]) != len(sides[1]):
-            raise InvalidGeometry(f"say which legs join which of {len(sides[0])} and {len(sides[1])} joints")
+            raise InvalidGeometry(
+                f"give legs: pairs of one of {len(sides[0])} base and one of {len(sides[1])} platform joints"
+            )
         joined = tuple((i, i) for i in range(len(sides[0]))) if legs is None else tuple(legs)
         place = tuple(array("reference", reference, 3, error=InvalidGeometry).tolist())
         return cls(legs=joined, reference=place, base=sides[0], platform=sides[1], servos=servos)
@@ -115,12 +119,12 @@ class Geometry:
 
     @cached_property
     def actuation(self) -> Actuation:
-        """Kind of the legs: slides, or rods moved by servos."""
+        """Kind of the legs: linear actuators (slides), or rods moved by servos."""
         return SLIDES if self.servos is None else ServoLegs(self.servos)
 
     @property
     def type(self) -> str:
-        """Joints a side, base first, as the literature names it: ``"6x3"``."""
+        """Number of joints of base and platform, as in the literature: ``"6x3"``."""
         return f"{len(self.base_joints)}x{len(self.platform_joints)}"
 
     @property
@@ -176,7 +180,7 @@ class Geometry:
 
     @cached_property
     def arrays(self) -> tuple[Array, Array, NDArray[np.int64]]:
-        """b, m and pairs as the compiled loops take them, which want them writable; leave them as they are."""
+        """b, m and pairs for the compiled functions, which need writable arrays; do not change them."""
         return self.b.copy(), self.m.copy(), self.pairs.copy()
 
     @property

@@ -26,18 +26,18 @@ FEWEST_JOINTS = 3
 def standard_geometry(
     type: str, base_radius: float, platform_radius: float, *, legs: int = 6, split: float = radians(15.0)
 ) -> Geometry:
-    """A sensible platform of a type: a place to start a design from.
+    """A standard platform of a type, to start a design from.
 
     Args:
-        type: Joints a side, base first, 3 to as many as there are legs: ``"6x3"``.
+        type: Number of joints of base and platform, each from 3 to the number of legs: ``"6x3"``.
         base_radius: rb in m.
         platform_radius: rm in m.
-        legs: 3 to 6. With three, the joints stand 120 degrees apart; with five, the sixth is left out.
-        split: How far the joints of a split vertex stand from where it was, rad.
+        legs: 3 to 6. With three, the joints are 120 degrees apart; with five, the sixth is left out.
+        split: Angle of the two joints of a split vertex from the vertex, rad.
 
     Raises:
-        UnknownName: Not a type that so many legs can have.
-        InvalidSetting: Not 3 to 6 legs, or a split that mixes up the joints.
+        UnknownName: Not a type for this number of legs.
+        InvalidSetting: Not 3 to 6 legs, or a split so large that joints change their order.
         InvalidGeometry: A radius that is not above zero.
     """
     if legs not in range(FEWEST_LEGS, MOST_LEGS + 1):

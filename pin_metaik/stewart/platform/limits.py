@@ -84,16 +84,16 @@ class LegLimits(JointLimits):
         longest: Length of a leg that is extended.
         base_angle: Largest angle between a leg and the axis of its base joint, 0 to pi; pi is no limit.
         platform_angle: The same at its platform joint.
-        distance: Least distance between the axes of two legs (their diameter and what clearance they need). Legs that
-            share a joint are not compared.
+        distance: Least distance between the axes of two legs (their diameter plus clearance). Legs that share a joint
+            are not compared.
         home: Position of P, with the platform level, at which the axes of all joints point along their legs. Without
             it the axes are normal to the base and to the platform, each towards the other.
-        dead_length: What a leg is longer than its stroke when it is retracted (its ends, nut and motor), so that
-            ``longest <= 2 shortest - dead_length``. None: it is not looked at, as for legs of several stages.
-        speed: How fast a leg can change its length, m/s; None: that is not looked at.
+        dead_length: Length of a retracted leg minus its stroke (its ends, nut and motor), so that ``longest <= 2
+            shortest - dead_length``. None: not checked, as for legs of several stages.
+        speed: Largest rate of a leg's length, m/s; None: not checked.
 
     Raises:
-        InvalidGeometry: A shortest length that is not above zero or above the longest, or a limit out of its range.
+        InvalidGeometry: ``shortest`` is not above zero, or is above ``longest``; or a limit is out of its range.
     """
 
     shortest: float
@@ -136,7 +136,7 @@ class LegLimits(JointLimits):
 
     @property
     def too_long(self) -> float:
-        """How much longer the longest leg is than a retracted one with its dead length could become, m; 0 if not."""
+        """By how much, m, ``longest`` exceeds what ``shortest`` and ``dead_length`` allow; 0 if it does not."""
         return 0.0 if self.dead_length is None else excess(self.shortest, self.longest, self.dead_length)
 
 
@@ -149,15 +149,15 @@ class ServoLimits(JointLimits):
         highest: Greatest angle of a servo, up to pi.
         base_angle: Largest angle between a rod and the axis of its joint at the horn, 0 to pi; pi is no limit.
         platform_angle: The same at its platform joint.
-        distance: Least distance between the axes of two rods; horns are not looked at. Legs that share a joint are not
+        distance: Least distance between the axes of two rods; horns are not checked. Legs that share a joint are not
             compared.
-        home: Position of P, with the platform level, at which the axes of all joints point along their rods. Without
-            it the axes at the horns are normal to them, in the direction in which they move (on branch -1 the opposite
-            one), and those at the platform are normal to it. The joint at a horn turns with the horn.
-        speed: How fast a servo can turn, rad/s; None: that is not looked at.
+        home: Position of P, with the platform level, at which the axes of all joints point along their rods. Without it
+            the axis at a horn is normal to the horn, in its direction of motion (on branch -1 the opposite one), and
+            the axes at the platform are normal to it. The joint at a horn turns with the horn.
+        speed: Largest angular rate of a servo, rad/s; None: not checked.
 
     Raises:
-        InvalidGeometry: Angles that are no numbers or in the wrong order, or a limit out of its range.
+        InvalidGeometry: Angles that are not numbers or in the wrong order, or a limit out of its range.
     """
 
     lowest: float
@@ -183,7 +183,7 @@ class ServoLimits(JointLimits):
 
     @property
     def beyond_lengths(self) -> bool:
-        """True: how near and how far shafts and platform joints can be does not tell where rods reach."""
+        """True: whether a rod reaches does not follow from the distance between shaft and platform joint alone."""
         return True
 
 
@@ -192,7 +192,7 @@ Limits: TypeAlias = LegLimits | ServoLimits
 
 def fit(limits: JointLimits, geometry: Geometry) -> None:
     """Raise InvalidGeometry unless these are limits of such legs."""
-    kind, needed = ("slides", LegLimits) if geometry.servos is None else ("servos", ServoLimits)
+    kind, needed = ("linear actuators", LegLimits) if geometry.servos is None else ("servos", ServoLimits)
     if not isinstance(limits, needed):
         raise InvalidGeometry(f"legs that are {kind} have {needed.__name__}, got {type(limits).__name__}")
 

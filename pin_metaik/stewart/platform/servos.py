@@ -20,25 +20,26 @@ Vector = tuple[float, float, float]
 @checked_as(InvalidGeometry)
 @dataclass(frozen=True)
 class Servos:
-    """Servos with horns and rods, one a leg. Lengths in m, angles in rad.
+    """Servos with horns and rods, one for each leg. Lengths in m, angles in rad.
 
-    Their axes are anywhere: by ``directions``, in the plane of the base, or by ``axes`` and ``zeros``, as vectors in
-    the base frame.
+    Their axes are given by ``directions``, in the plane of the base, or by ``axes`` and ``zeros``, any vectors in the
+    base frame.
 
     Attributes:
-        horn: From the shaft to the joint of the rod; one for all legs, or one each.
-        rod: Between the joints of a rod, likewise.
-        directions: Where horns point at angle 0, seen from above and counted from the x axis, one each: the axes lie in
-            the plane of the base, and positive angles raise the horns.
+        horn: Length of a horn, from the shaft to the joint of the rod; one for all legs, or one each.
+        rod: Length of a rod between its joints, likewise.
+        directions: Directions of the horns at angle 0, one each, as angles from the x axis seen from above: the axes
+            lie in the plane of the base, and positive angles raise the horns.
         axes: Axes of the shafts, one vector each, of any length; a positive angle turns right-handed about it.
-        zeros: Where horns point at angle 0, one vector each: of them counts what is square to the axis. None: level, so
-            that positive angles raise the horns, which vertical axes do not have.
-        branches: Which of its two angles each servo has, +1 or -1; one for all legs, or one each. On branch +1 a horn
-            that turns to larger angles pushes its rod, on -1 it pulls.
+        zeros: Directions of the horns at angle 0, one vector each, of which the component normal to the axis is used.
+            None: horizontal, so that positive angles raise the horns; not possible for vertical axes.
+        branches: Which of the two possible angles each servo has, +1 or -1; one for all legs, or one each. On branch +1
+            a horn that turns to larger angles pushes its rod, on -1 it pulls.
 
     Raises:
-        InvalidGeometry: A length that is not above zero, no axes or two kinds of them, an axis of no direction, a zero
-            along its axis, another branch, or numbers for more or fewer legs than there are.
+        InvalidGeometry: A length that is not above zero, neither ``directions`` nor ``axes`` or both of them, an axis
+            of length zero, a vector of ``zeros`` along its axis, another branch, or values for more or fewer legs than
+            there are.
     """
 
     horn: float | tuple[float, ...]
@@ -96,7 +97,7 @@ class Servos:
 
     @cached_property
     def rows(self) -> Array:
-        """Each servo as the compiled loops take it: u, w, a, horn, rod, branch (n, 12)."""
+        """Each servo for the compiled functions: u, w, a, horn, rod, branch (n, 12)."""
         parts = (self.frames.reshape(-1, 9), *(each(self, name) for name in ("horn", "rod", "branches")))
         return np.column_stack(parts)
 

@@ -8,7 +8,7 @@ from enum import IntEnum
 class PoseState(IntEnum):
     """State of a pose: reached, or the first limit that forbids it.
 
-    They are looked at in this order, but for the angles of servos: a rod that reaches has one, which comes next.
+    Limits are checked in this order, but the angle of a servo right after its rod's reach, without which it has none.
     """
 
     UNSEEN = 0

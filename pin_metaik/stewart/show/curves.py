@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 @checked
 def draw_motion(motion: Motion, mechanism: Mechanism) -> Figure:
-    """The legs along a trajectory: coordinates and rates over time with their limits, and dexterity.
+    """A figure of the legs along a trajectory: coordinates and rates over time with their limits, and dexterity.
 
     Args:
-        motion: What ``follow`` found.
+        motion: The result of ``follow``.
         mechanism: The mechanism, for its limits and its unit.
 
     Raises:
@@ -55,7 +55,7 @@ def draw_motion(motion: Motion, mechanism: Mechanism) -> Figure:
 
 @checked
 def draw_history(designed: Designed) -> Figure:
-    """Best fitness over designs looked at.
+    """A figure of the best fitness over the designs evaluated.
 
     Raises:
         MissingExtra: matplotlib is not installed.

@@ -25,7 +25,7 @@ def notes(mechanism: Mechanism, workspace: Workspace | None = None) -> list[str]
         free = MOST_LEGS - geometry.n
         said.append(
             f"{geometry.n} legs between universal and spherical joints leave the platform {free} "
-            f"freedom{'s' if free > 1 else ''}: they do not hold it, and dexterity says only how they act on it"
+            f"degree{'s' if free > 1 else ''} of freedom: they do not hold it, and dexterity says only how they act"
         )
     if isinstance(limits, LegLimits) and limits.stroke > limits.shortest and limits.dead_length is None:
         said.append(
@@ -37,5 +37,5 @@ def notes(mechanism: Mechanism, workspace: Workspace | None = None) -> list[str]
     if not workspace.complete:
         said.append("interrupted: the figures are about the poses seen until then")
     if max(workspace.cells.shape[:3]) > 1 and workspace.cells_reached < LEAST:
-        said.append(f"only {workspace.cells_reached} cells carry the figures: they are rough; use a finer grid")
+        said.append(f"only {workspace.cells_reached} cells were reached: the figures are rough; use a finer grid")
     return said

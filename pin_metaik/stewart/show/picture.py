@@ -54,9 +54,9 @@ def draw_into(
     Args:
         figure: Where to draw.
         mechanism: What to draw.
-        workspace: Its workspace, if that is to be drawn too: its cells, coloured by nu, and red points where det J
-            changes sign between them.
-        pose: Where the platform is; default: in the middle of the workspace, or level at half stroke.
+        workspace: Its workspace, to be drawn as cells coloured by nu, with red points where det J changes sign between
+            them; or None.
+        pose: Pose of the platform; default: in the middle of the workspace, or level at half stroke.
 
     Raises:
         InvalidTarget: Not a pose.
@@ -82,11 +82,11 @@ def draw_into(
 
 @checked
 def draw_above(mechanism: Mechanism, pose: PoseLike | None = None) -> Figure:
-    """A mechanism seen from above: where the joints of both sides are, and the legs between them.
+    """A picture of a mechanism from above: the joints of base and platform, and the legs between them.
 
     Args:
         mechanism: What to draw.
-        pose: Where the platform is; default: level over the base at half stroke.
+        pose: Pose of the platform; default: level over the base at half stroke.
 
     Raises:
         InvalidTarget: Not a pose.

@@ -1,4 +1,4 @@
-"""What there is to say about a mechanism, as labelled lines in its own units."""
+"""The report on a mechanism, as labelled lines in its own units."""
 
 from __future__ import annotations
 

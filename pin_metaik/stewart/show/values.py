@@ -1,4 +1,4 @@
-"""What there is to say about a mechanism as plain values in m, s and rad, for JSON."""
+"""The report on a mechanism as plain values in m, s and rad, for JSON."""
 
 from __future__ import annotations
 

@@ -22,8 +22,8 @@ class Designed:
     """The result of a design.
 
     Attributes:
-        mechanism: The best mechanism found, with the settings it was found with. If none was feasible, the one given.
-        score: Its fitness, and the two parts of it, by a few thousand cells; None if no design was feasible.
+        mechanism: The best mechanism found, with the settings of the search. If none was feasible, the given one.
+        score: Its fitness and the two parts of it, measured with a few thousand cells; None if no design was feasible.
         search: The search itself: why it ended, evaluations, seconds, trace.
     """
 
@@ -33,7 +33,7 @@ class Designed:
 
     @property
     def success(self) -> bool:
-        """Whether a feasible design was found. One found before an interruption counts."""
+        """Whether a feasible design was found, also before an interruption."""
         return self.score is not None
 
     def __bool__(self) -> bool:
@@ -46,7 +46,7 @@ class Designed:
 
     @property
     def history(self) -> Array:
-        """Designs looked at and best fitness after each generation (g, 2); below 0 while none was feasible."""
+        """(g, 2) designs evaluated and best fitness after each generation; below 0 while none was feasible."""
         assert self.search.trace is not None
         return self.search.trace * [1.0, -1.0]
 
@@ -82,12 +82,14 @@ class _Measured:
 def design(
     mechanism: Mechanism, *, rng: int | np.random.Generator | None = None, watch: Watch | None = None
 ) -> Designed:
-    """Look for the dimensions with the best fitness, by the mechanism's task.
+    """Search for the dimensions with the best fitness, by the mechanism's task.
 
     Args:
-        mechanism: What to start from: the joints and legs there are, and everything that is fixed.
+        mechanism: The mechanism to start from: its joints and legs, and all dimensions that are not in the task's
+            ranges.
         rng: Seed or generator instead of the task's seed; the same seed gives the same design.
-        watch: Called after every generation with designs looked at and in all, and the best cost; True ends the search.
+        watch: Called after every generation with the designs evaluated, their total and the best cost; returning True
+            ends the search.
 
     Returns:
         The result; check ``result.success``.

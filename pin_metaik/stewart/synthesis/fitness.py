@@ -31,7 +31,7 @@ POSES, FINE_POSES = 300_000, 4_000_000
 
 @dataclass(frozen=True)
 class Score:
-    """How good a workspace is.
+    """The fitness of a workspace and its two parts.
 
     Attributes:
         fitness: The weighted sum, which is maximised.
@@ -49,7 +49,7 @@ class Fitness:
     """The objective of a design: costs (k,) of points (k, v); the cost of a feasible design is minus its fitness.
 
     Attributes:
-        variables: Between points and dimensions.
+        variables: The mapping between points of the search and dimensions.
         cube: Side in m of the cube whose volume counts as 1.
     """
 
@@ -71,13 +71,13 @@ class Fitness:
         return np.array([self.cost(x) for x in array("X", X, "k", self.variables.box.dimension)])
 
     def cost(self, x: Array, *, fine: bool = False) -> float:
-        """Minus the fitness; 1 ... 2 for a workspace of no use, 2 if it is empty, more for what cannot be built.
+        """Minus the fitness; for infeasible designs 1 to 2, 2 with an empty workspace, more if it cannot be built.
 
-        A workspace so thin that its grid cannot be made fine enough to measure it is of no use.
+        A workspace too thin to be measured by the finest grid is infeasible.
 
         Args:
             x: The design (v,).
-            fine: Whether to measure its workspace by a few thousand cells instead of a few hundred.
+            fine: Whether to measure its workspace with a few thousand cells instead of a few hundred.
         """
         dimensions = self.variables.dimensions(array("x", x, self.variables.box.dimension))
         if missing := self.missing(dimensions):
@@ -94,7 +94,7 @@ class Fitness:
 
     @checked
     def missing(self, dimensions: Dimensions) -> float:
-        """How much length is missing for the joints to keep their gap and the legs to extend, m; 0 if none."""
+        """By how much, m, the joints miss their gap and the legs their stroke in sum; 0 if a design can be built."""
         between = np.concatenate(
             [
                 gaps(joints) if len(joints) else chords(radius, angles)
@@ -116,7 +116,7 @@ class Fitness:
         """The platform with these dimensions.
 
         Raises:
-            InvalidGeometry: If there is something missing.
+            InvalidGeometry: If it cannot be built (``missing`` is above 0).
         """
         geometry, limits = self.mechanism.geometry, self.mechanism.limits
         servos = geometry.servos
@@ -143,7 +143,7 @@ class Fitness:
 
     @checked
     def workspace(self, geometry: Geometry, limits: Limits, *, fine: bool = False) -> Workspace:
-        """The workspace on the task's grid, or on a finer one within its ranges where too few of its cells are reached.
+        """The workspace on the task's grid, or on a finer one in its ranges if too few of its cells are reached.
 
         Unlike that of ``survey`` it may be empty.
         """
@@ -153,7 +153,7 @@ class Fitness:
 
     @checked
     def score(self, workspace: Workspace) -> Score:
-        """The fitness of a workspace that is not singular, and its two parts."""
+        """The fitness of a workspace without singularities, and its two parts."""
         counted = workspace.reached
         dexterity = float(workspace.nu[workspace.regular].mean())
         if self.task.index == "lci":

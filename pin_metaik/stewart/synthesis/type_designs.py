@@ -1,4 +1,4 @@
-"""The types of platforms side by side: one task, a design of each, and what came of it."""
+"""Comparison of the types of platforms: a design of each type for the same task."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class TypeDesign:
     """The best design of one type.
 
     Attributes:
-        type: Joints a side, base first.
+        type: Number of joints of base and platform, e.g. ``"6x3"``.
         designed: The best of the runs.
         runs: The fitness of each run; NaN where no design was feasible.
     """
@@ -70,7 +70,7 @@ def new_mechanism(
     legs: int = MOST_LEGS,
     unit: str = "mm",
 ) -> Mechanism:
-    """A mechanism of a type with a design to begin with: radii and angles free about where they are.
+    """A new mechanism of a type, with a design task in which radii and angles may vary around their values.
 
     Args:
         type: Joints a side, base first: ``"6x3"``.
@@ -103,7 +103,7 @@ def new_servo_mechanism(
     legs: int = MOST_LEGS,
     unit: str = "mm",
 ) -> Mechanism:
-    """A mechanism moved by servos with a design to begin with: radii, angles, horn and rod free about where they are.
+    """A new mechanism moved by servos, with a design task in which radii, angles, horn and rod may vary.
 
     The axes of the servos point to the middle of the base; they turn by 60 degrees to either side.
 
@@ -167,28 +167,29 @@ def compare_types(
     rng: int | None = None,
     watch: Watch | None = None,
 ) -> list[TypeDesign]:
-    """Design a platform of every type for one task, best first.
+    """Design a platform of every type for the same task; the best comes first.
 
-    Each begins with the standard platform of its type and the mechanism's radii, and servos with its horns and rods and
-    axes that point to the middle; radii and legs are free as its task says, the angles 25 degrees to either side of the
-    standard ones but for the first, and everything else is the mechanism's.
-    Ctrl-C ends the run that is going on and leaves out those that would follow.
+    Each search begins with the standard platform of its type and the mechanism's radii (with servos, also with its
+    horns and rods, and axes that point to the centre). The ranges of radii and legs are those of the task; the joint
+    angles, except the first, may move by 25 degrees to either side of the standard ones; everything else is as in the
+    mechanism. Ctrl-C ends the present run and skips the following ones.
 
     Args:
-        mechanism: With a task.
-        types: Of platforms with as many legs as it has, and with servos with as many base joints; default: those of six
-            legs.
-        runs: Searches for each type, with seeds that follow the task's.
+        mechanism: A mechanism with a task.
+        types: Types of platforms with as many legs as the mechanism (with servos, also as many base joints); default:
+            those of six legs.
+        runs: Number of searches for each type, with consecutive seeds from the task's on.
         rng: The first seed instead of the task's.
-        watch: Called after every generation with designs looked at and in all; True ends it as Ctrl-C does.
+        watch: Called after every generation with the designs evaluated and their total; returning True ends it as
+            Ctrl-C does.
 
     Raises:
-        InvalidSetting: The mechanism has no task or joints anywhere, or fewer than one run.
-        UnknownName: A type that there is not.
+        InvalidSetting: The mechanism has no task or has joints given as points, or ``runs`` is below 1.
+        UnknownName: There is no such type.
     """
     task = task_of(mechanism)
     if mechanism.geometry.base is not None or mechanism.geometry.platform is not None:
-        raise InvalidSetting("types are compared of platforms with their joints on circles, not anywhere")
+        raise InvalidSetting("types are compared for platforms with their joints on circles, not given as points")
     few("runs", runs, 1)
     radii, legs = (mechanism.geometry.base_radius, mechanism.geometry.platform_radius), mechanism.geometry.n
     servos = mechanism.geometry.servos

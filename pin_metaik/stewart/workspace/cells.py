@@ -92,7 +92,7 @@ def finer_cells(grid: Grid, box: Array, volume: float) -> Cells:
 def room(grid: Grid, geometry: Geometry, limits: Limits) -> Array | None:
     """A box (2, 3) that holds every position within the limits, in any orientation of the grid and within its ranges.
 
-    With the lengths of slides alone it is exact. None: there is no such position, proved but for rounding.
+    With the lengths of linear actuators alone it is exact. None: there is no such position, proved but for rounding.
     """
     R = grid.rotations
     turned = np.ascontiguousarray(geometry.m @ R.transpose(0, 2, 1))  # (o, n, 3)

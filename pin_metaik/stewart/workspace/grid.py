@@ -1,4 +1,4 @@
-"""Where a workspace is looked for: a grid of positions, at one orientation or at several."""
+"""The grid of a workspace: positions, at one orientation or at several."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ Range: TypeAlias = tuple[float, float]
 
 @dataclass(frozen=True)
 class Grid:
-    """Positions of P in the base frame, by cells; orientations Rz(yaw) Ry(pitch) Rx(roll), by steps.
+    """A grid of poses: cells of positions of P in the base frame, and orientations Rz(yaw) Ry(pitch) Rx(roll).
 
-    Positions are the centres of equal cells, so that a count of them is a volume. Orientations include both ends of
-    their range, so that "all of them" means what it says; one step is the middle.
+    Positions are the centres of equal cells, so that their number is a volume. Orientations include both ends of their
+    range; a single step is the middle of it.
 
-    A range that is left open is as wide as the limits of the legs leave room, however narrow that is. With one or more
-    open ranges there are more cells than ``counts`` says where too few of them would be reached to measure anything by.
+    An open range (None) is as wide as the limits of the legs allow, however narrow that is. With open ranges the grid
+    has more cells than ``counts`` says, if otherwise too few of them would be reached.
 
     Attributes:
-        counts: Cells along x, y and z.
-        x: First and last x in m; None: as far as the limits leave room.
+        counts: Number of cells along x, y and z.
+        x: First and last x in m; None: as far as the limits allow.
         y: The same for y.
-        z: The same for z; None: as far as they leave room with the platform's joints above the base's.
-        steps: Orientations in roll, pitch and yaw.
+        z: The same for z; None: as far as the limits allow with the platform's joints above those of the base.
+        steps: Number of orientations in roll, pitch and yaw.
         roll: First and last roll in rad.
         pitch: The same for pitch.
         yaw: The same for yaw.

@@ -23,18 +23,18 @@ TOUCHES = 1e-7  # nu at which a trajectory touches a singular surface: what a mi
 
 @dataclass(frozen=True, eq=False)
 class Singularities:
-    """The singular poses of a workspace, and how near it comes to those of the first kind.
+    """The singular poses of a workspace, and how near it comes to singularities of the first kind.
 
     Attributes:
         verdict: Whether the mechanism holds its platform throughout.
         poses: Poses of the grid that are singular (s, 4, 4).
         crossings: Poses half-way between neighbours of the grid with opposite signs of det J (c, 4, 4): the singular
             surface passes within half a cell of each.
-        nearest: The pose reached with the lowest nu (4, 4), and ...
-        nu: ... its nu; 0 if it is singular.
+        nearest: The pose (4, 4) reached that has the lowest nu.
+        nu: The nu of ``nearest``; 0 if it is singular.
         transmission: The least transmission of a servo at the poses reached: 0 in a singularity of the first kind,
-            where a rod is in line with its horn and its two branches meet; 1 for slides, which have none.
-        weakest: Where that is, a pose (4, 4); None for slides.
+            where a rod is in line with its horn and its two branches meet; 1 for linear actuators, which have none.
+        weakest: The pose (4, 4) with that transmission; None for linear actuators.
     """
 
     verdict: Verdict
@@ -48,7 +48,7 @@ class Singularities:
 
 @checked
 def singularities(workspace: Workspace) -> Singularities:
-    """Look for singular poses in a workspace; with fewer than six legs det J has no sign, and none cross."""
+    """Look for singular poses in a workspace; with fewer than six legs det J does not exist, nor ``crossings``."""
     steps = workspace.cells.steps
     states = workspace.states.reshape(*workspace.states.shape[:3], *steps)
     crossings = [np.empty((0, 4, 4))]
@@ -80,7 +80,7 @@ def _flat(index: NDArray[np.int64], steps: tuple[int, int, int]) -> NDArray[np.i
 
 @dataclass(frozen=True, eq=False)
 class Crossing:
-    """A singular pose on a trajectory: one in which the platform can move while its legs are held.
+    """A singular pose on a trajectory, in which the platform can move while its legs are held.
 
     Attributes:
         time: When, s.
@@ -97,8 +97,8 @@ class Crossing:
 def crossings(geometry: Geometry, trajectory: Trajectory) -> list[Crossing]:
     """The singular poses of a trajectory, in order of time.
 
-    Between two samples det J changes sign an odd number of times or is touched at a minimum of nu: sample finely enough
-    that it happens once.
+    Between two samples, one change of the sign of det J, or one minimum of nu at which it is zero, is found: sample
+    finely enough that there is at most one.
     """
     times = trajectory.times
     nu, states = _at(geometry, trajectory, times)

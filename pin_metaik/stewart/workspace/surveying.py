@@ -42,21 +42,21 @@ def survey(
 ) -> Workspace:
     """Judge every pose of a grid.
 
-    A grid with open ranges is laid over the room that the limits leave, and made finer until a thousand of its cells
-    are reached, or four million poses do not suffice; ``Workspace.cells_reached`` says how many carry the figures.
-    With all its ranges given, a grid is taken as it is.
+    A grid with open ranges covers the positions that the limits can allow, and is refined until a thousand of its cells
+    are reached, up to four million poses; ``Workspace.cells_reached`` is the number of cells that the figures are based
+    on. A grid with all its ranges given is used as it is.
 
     Args:
         geometry: The platform.
-        limits: What its legs allow.
-        grid: Where to look; default: as far as the limits leave room, level, in 40 x 40 x 40 cells.
+        limits: Limits of its legs.
+        grid: The grid; default: as far as the limits allow, level, in 40 x 40 x 40 cells.
         dexterity: How to measure nu.
-        watch: Called with cells done and in all; True ends the survey, and ``complete`` is False.
+        watch: Called with the cells done and in all; returning True ends the survey, and ``complete`` is then False.
 
     Raises:
-        EmptyWorkspace: No pose of the grid is within the limits; it says whether that is proved for all between them.
-        InvalidGeometry: Limits of another kind of legs, or a home that gives a joint no axis.
-        Interrupted: Ctrl-C, once a pose was reached; its ``result`` is the workspace as far as it was seen.
+        EmptyWorkspace: No pose of the grid is within the limits; it says whether that is proved between them, too.
+        InvalidGeometry: Limits of the other kind of legs, or a ``home`` at which the axis of a joint is undefined.
+        Interrupted: Ctrl-C, once a pose was reached; its ``result`` is the workspace as far as it was surveyed.
     """
     where = grid or Grid()
     try:

@@ -26,8 +26,8 @@ class EmptyWorkspace(InvalidGeometry):
 
     Attributes:
         reasons: How many poses each limit forbids.
-        room: A box (2, 3) in m that holds whatever the limits may allow within the ranges of the grid, between its
-            positions; None: they allow nothing there, which is proved.
+        room: A box (2, 3) in m that contains every position that the limits may allow within the ranges of the grid;
+            None: it is proved that they allow none.
     """
 
     def __init__(self, reasons: dict[PoseState, int], room: Array | None = None) -> None:
@@ -59,14 +59,14 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Workspace:
-    """A grid of poses, each judged.
+    """A grid of poses, each with its state and dexterity.
 
     Attributes:
         geometry: The platform.
-        limits: What its legs allow.
+        limits: Limits of its legs.
         cells: The grid.
-        dexterity: How nu was measured ...
-        length: ... and the characteristic length in m that this meant.
+        dexterity: How nu was measured.
+        length: Characteristic length of nu, m.
         states: A ``PoseState`` for every pose (nx, ny, nz, o).
         nu: Local conditioning index (nx, ny, nz, o), 0 where not reached or singular.
     """
@@ -111,7 +111,7 @@ class Workspace:
 
     @cached_property
     def cells_reached(self) -> int:
-        """How many cells carry the figures: those reached in at least one of the orientations."""
+        """Number of cells that the figures are based on: those reached in at least one of the orientations."""
         return int(self.reached.any(axis=-1).sum())
 
     @property
@@ -143,7 +143,7 @@ class Workspace:
 
     @property
     def at_one_position(self) -> bool:
-        """Whether this is the orientations reached at a single position, which have no volume."""
+        """Whether the grid has a single position, and therefore orientations but no volume."""
         return self.states.shape[:3] == (1, 1, 1) and self.states.shape[3] > 1
 
     @property
@@ -156,8 +156,7 @@ class Workspace:
     def gdi(self) -> float | None:
         """Global dexterity index, Eq. 10: mean nu over the poses reached that are not singular.
 
-        None when all are singular: such a mechanism has no dexterity to speak of. See ``verdict`` and ``counts`` for
-        how many were left out.
+        None if all are singular. See ``verdict`` and ``counts`` for how many were left out.
         """
         return float(self.nu[self.regular].mean()) if self.regular.any() else None
 
@@ -197,7 +196,7 @@ class Workspace:
     def poses(self, which: NDArray[np.bool_]) -> Array:
         """Poses (r, 4, 4) of the grid where `which` (nx, ny, nz, o) is true."""
         if which.shape != self.states.shape:
-            raise InvalidSetting(f"which poses is an array of shape {self.states.shape}, got {which.shape}")
+            raise InvalidSetting(f"which is a boolean array of shape {self.states.shape}, got {which.shape}")
         return self.poses_of(np.argwhere(which))
 
     @property

@@ -228,9 +228,9 @@ class Growing:
 
 REFUSED: dict[str, tuple[type[Exception], str, Callable[[], Any]]] = {
     "an empty box": (InvalidTarget, "it is empty", lambda: goals.InBox("tool0", (1, 1, 1), (0, 2, 2))),
-    "a box everywhere": (InvalidTarget, "everywhere", lambda: goals.InBox("tool0", [-math.inf] * 3, [math.inf] * 3)),
+    "a box everywhere": (InvalidTarget, "has no bound", lambda: goals.InBox("tool0", [-math.inf] * 3, [math.inf] * 3)),
     "distances crossed": (InvalidTarget, "2 to 1", lambda: goals.Distance("tool0", FAR, least=2, most=1)),
-    "any distance": (InvalidTarget, "asks for nothing", lambda: goals.Distance("tool0", FAR)),
+    "any distance": (InvalidTarget, "is always met", lambda: goals.Distance("tool0", FAR)),
     "a negative distance": (InvalidTarget, "at least 0", lambda: goals.Distance("tool0", FAR, least=-1, most=1)),
     "a zero direction": (InvalidTarget, "with a direction", lambda: goals.Pointing("tool0", "z", (0, 0, 0))),
     "an unknown axis": (InvalidTarget, "x, y, z, -x", lambda: goals.LookAt("tool0", FAR, "w")),
@@ -243,7 +243,7 @@ REFUSED: dict[str, tuple[type[Exception], str, Callable[[], Any]]] = {
         "at most 0.5 m",
         lambda: goals.CentreOfMass([(0, 0), (1, 0), (1, 1), (0, 1)], margin=0.6),
     ),
-    "nothing of a mass": (InvalidTarget, "asks for nothing", lambda: goals.CentreOfMass()),
+    "nothing of a mass": (InvalidTarget, "is always met", lambda: goals.CentreOfMass()),
     "no posture": (InvalidTarget, "at least one joint", lambda: goals.Posture({})),
     "a joint's range crossed": (InvalidTarget, "2 to 1", lambda: goals.Posture({"elbow_joint": (2, 1)})),
     "a share above one": (InvalidTarget, "from 0 to 1", lambda: goals.MidRange(1.5)),

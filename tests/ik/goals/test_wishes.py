@@ -111,5 +111,5 @@ def test_a_wish_goes_through_batches_and_choices() -> None:
 
 def test_a_wish_takes_a_refiner() -> None:
     chain = chain_of("ur5")
-    with pytest.raises(InvalidSetting, match="wishes take a refiner"):
+    with pytest.raises(InvalidSetting, match="wishes need a refiner"):
         mik.solve_ik(chain, Wish(goals.MidRange(0)), solver=mik.IKSolver("gwo", None))

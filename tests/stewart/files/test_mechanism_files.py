@@ -235,7 +235,7 @@ WRONG = {
     "no radius": ("radius = 100", "", InvalidTable, "platform: radius is missing"),
     "no legs": ("base = [1, 1, 2, 2, 3, 3]\n", "", InvalidTable, "legs: base is missing"),
     "no ranges": ("[design.ranges]", "[design.other]", InvalidTable, "design: unknown key 'other'"),
-    "an unknown unit": ('"mm"', '"inch"', InvalidTable, "length = 'inch' is none of the units m, cm, mm"),
+    "an unknown unit": ('"mm"', '"inch"', InvalidTable, "length = 'inch' is not one of the units m, cm, mm"),
     "an unknown norm": ('norm = "two"', 'norm = "three"', InvalidSetting, "platform.toml: norm must be one of"),
     "an unknown length": ("length = 120", 'length = "rb"', InvalidSetting, "length is 'rm', 'best' or"),
     "an unknown algorithm": ('"qpso"', '"qqpso"', UnknownName, "no metaheuristic named 'qqpso'; did you mean 'qpso'"),

@@ -129,5 +129,5 @@ def test_a_platform_that_moves_with_its_legs_held_is_not_enumerated():
 def test_one_set_of_lengths_for_six_legs_is_asked_for():
     with pytest.raises(InvalidConfiguration, match="one set"):
         all_forward(cube(0.1), np.full((2, 6), 0.1))
-    with pytest.raises(InvalidSetting, match="freedoms"):
+    with pytest.raises(InvalidSetting, match="degrees of freedom"):
         all_forward(standard_geometry("3x3", 0.25, 0.12, legs=4), [0.3] * 4)

@@ -234,11 +234,11 @@ def test_limits_and_branches_of_the_other_kind_are_refused():
     servos, slides = load_mechanism("servo_sg90"), reference()
     with pytest.raises(InvalidGeometry, match="legs that are servos have ServoLimits, got LegLimits"):
         survey(servos.geometry, LegLimits(0.1, 0.2))
-    with pytest.raises(InvalidGeometry, match="legs that are slides have LegLimits, got ServoLimits"):
+    with pytest.raises(InvalidGeometry, match="legs that are linear actuators have LegLimits, got ServoLimits"):
         judge_poses(slides.geometry, ServoLimits(-1, 1), np.eye(4))
     with pytest.raises(InvalidGeometry, match="legs that are servos have ServoLimits"):
         replace(servos, limits=LegLimits(0.1, 0.2))
-    with pytest.raises(InvalidSetting, match="slides have no branches"):
+    with pytest.raises(InvalidSetting, match="linear actuators have no branches"):
         inverse(slides.geometry, np.eye(4), 1)
     with pytest.raises(InvalidGeometry, match="branches of servos are 1 or -1, got 2"):
         inverse(servos.geometry, np.eye(4), 2)

@@ -189,7 +189,7 @@ def test_a_design_may_give_up_a_circle_and_keeps_a_dead_length():
 
 def test_ranges_for_a_circle_do_not_fit_joints_anywhere():
     task = DesignTask(Ranges(base_radius=(0.2, 0.3)))
-    with pytest.raises(InvalidBounds, match="the joints of the base are anywhere: give base ranges"):
+    with pytest.raises(InvalidBounds, match="the joints of the base are points: give base ranges"):
         design(Mechanism("x", calibrated(), LegLimits(0.35, 0.47), task=task))
     task = DesignTask(Ranges(base=((0.0, 0.0, (0.0, 0.1)),)))
     with pytest.raises(InvalidBounds, match="base has 1 ranges for 6 joints"):
@@ -204,7 +204,7 @@ def test_points_and_a_circle_for_one_side_are_refused():
         replace(circles, base=circles.base_joints)
     with pytest.raises(InvalidGeometry, match="not both"):
         replace(calibrated(), platform_radius=0.3)
-    with pytest.raises(InvalidGeometry, match="say which legs join which of 6 and 3 joints"):
+    with pytest.raises(InvalidGeometry, match="give legs: pairs of one of 6 base and one of 3 platform joints"):
         Geometry.of_joints(calibrated().base, circles.platform_joints)
     with pytest.raises(InvalidGeometry, match="base"):
         Geometry.of_joints([[0, 0, np.nan]] * 3, circles.platform_joints)

@@ -1,4 +1,4 @@
-"""Other people's solvers, through the same protocol; each needs its package."""
+"""Solvers of other packages, through the same protocol; each needs its package."""
 
 from __future__ import annotations
 

@@ -11,13 +11,16 @@ from pathlib import Path
 from typing import Any
 
 from pin_metaik.collision import CollisionWorld, Obstacle, load_scene
+from pin_metaik.errors import InvalidModel
 from pin_metaik.gui.pages.arms.state import ArmsState
 from pin_metaik.gui.uploads import only_inside
 from pin_metaik.kinematics import Chain
 from pin_metaik.robots import Robot, load_robot
 from pin_metaik.robots.library import catalogue, example_robots
+from pin_metaik.robots.macros import is_xacro
+from pin_metaik.robots.text import read_text
 
-FILES = re.compile(r"""filename\s*=\s*["']([^"']*)["']""")
+FILES = re.compile(r"""\bfile(?:name)?\s*=\s*["']([^"']*)["']""")
 KEPT = 12  # robots by name that all tabs share
 
 
@@ -49,6 +52,7 @@ class Arm:
         elif state.urdf:
             path = folder / "robot.urdf"
             path.write_text(state.urdf, encoding="utf-8")
+            only_plain(path)
             robot, code = load_robot(path), 'robot = mik.load_robot("robot.urdf")'
             only_inside(FILES.findall(robot.urdf), robot.name)
         elif state.parameters:
@@ -65,6 +69,16 @@ class Arm:
             MetaIKError: Its geometry cannot be read, or an obstacle makes no sense.
         """
         return CollisionWorld(self.robot, obstacles)
+
+
+def only_plain(path: Path) -> None:
+    """Make sure that a URDF is none that runs something when it is read.
+
+    Raises:
+        InvalidModel: It is xacro, whose expressions are Python, and whose includes are any files.
+    """
+    if is_xacro(read_text(path), path.name):
+        raise InvalidModel("this is xacro, whose expressions are Python: expand it first, with the command `xacro`")
 
 
 @lru_cache(KEPT)

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.gui.forms import fine
 from pin_metaik.gui.tab import Tab
 from pin_metaik.kinematics import Chain
 
-STEPS = 1000.0  # of a slider
 FAR = 2.0  # m, of a slide without limits
 
 
@@ -36,13 +36,14 @@ class JointSliders:
             low, high = float(limits.lower[number]), float(limits.upper[number])
             low = low if math.isfinite(low) else -turn
             high = high if math.isfinite(high) else turn
+            step, decimals = fine(low, high)
             unit = "rad" if limits.rotates[number] else "m"
             handle = tab.client.gui.add_slider(
                 f"{name}, {unit}",
                 min=low,
                 max=max(high, low + 1e-9),
-                step=max(high - low, 1e-9) / STEPS,
-                initial_value=float(np.clip(x[number], low, high)),
+                step=step,
+                initial_value=float(np.clip(round(x[number], decimals), low, high)),
                 disabled=high <= low,
                 hint=f"Limits: {low:.4g} to {high:.4g} {unit}.",
             )

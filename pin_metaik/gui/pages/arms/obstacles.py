@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -14,9 +13,11 @@ import pinocchio as pin
 from pin_metaik.collision import Obstacle, load_scene, scene_names
 from pin_metaik.collision.drawing import surface
 from pin_metaik.errors import InvalidGeometry
+from pin_metaik.files import json_values, read_text
 from pin_metaik.gui.look.robot import pose_of, put
 from pin_metaik.gui.pages.arms.arm import Scenery
 from pin_metaik.gui.tab import ROOT, Tab
+from pin_metaik.toml import toml_values
 
 NODE = f"{ROOT}/obstacles"
 WOOD = (184, 135, 89)
@@ -26,6 +27,8 @@ SIZES: dict[str, dict[str, Any]] = {
     "cylinder": {"radius": 0.08, "length": 0.3},
     "capsule": {"radius": 0.08, "length": 0.3},
 }
+NONE = "none"
+GIZMO = 0.15  # m
 WHERE = [0.5, 0.0, 0.3]  # m, a place in front of most arms
 
 
@@ -45,6 +48,12 @@ class ObstacleControls:
         shape = gui.add_dropdown("Shape", tuple(SIZES), hint="Of an obstacle to add.")
         add = gui.add_button("Add an obstacle")
         add.on_click(tab.doing(lambda: self._add({"shape": shape.value, **SIZES[shape.value], "position": WHERE})))
+        self._which = gui.add_dropdown("Obstacle", (NONE,), hint="One of those that are there.")
+        self._which.on_update(tab.doing(self._show_place))
+        self._place = gui.add_vector3("Its x, y, z, m", (0.0, 0.0, 0.0), step=0.001, disabled=True)
+        self._place.on_update(tab.doing(self._put))
+        self._away = gui.add_button("Take it away", disabled=True)
+        self._away.on_click(tab.doing(self._take_away))
         known = gui.add_dropdown("Scene", tuple(scene_names()), hint="Scenes that come with the package.")
         take = gui.add_button("Put up this scene")
         take.on_click(tab.doing(lambda: self._replace(entries_of(known.value), tab.folder)))
@@ -63,12 +72,17 @@ class ObstacleControls:
         scene = self._tab.client.scene
         for node in self._nodes:
             node.remove()
-        self._nodes = [
-            self._drawn(scene, number, obstacle) for number, obstacle in enumerate(self._scenery.obstacles())
-        ]
+        obstacles = self._scenery.obstacles()
+        self._nodes = [self._drawn(scene, number, obstacle) for number, obstacle in enumerate(obstacles)]
+        names = tuple(obstacle.name for obstacle in obstacles)
+        if names != self._which.options:
+            self._which.options = names or (NONE,)
+            self._which.value = names[-1] if names else NONE
+        self._place.disabled = self._away.disabled = not names
+        self._show_place()
 
     def _drawn(self, scene: Any, number: int, obstacle: Obstacle) -> Any:
-        gizmo = scene.add_transform_controls(f"{NODE}/{number}", scale=0.25, line_width=2.0, depth_test=False)
+        gizmo = scene.add_transform_controls(f"{NODE}/{number}", scale=GIZMO, line_width=2.0, depth_test=False)
         put(gizmo, obstacle.pose)
         vertices, triangles = surface(obstacle.shape.geometry())
         scene.add_mesh_simple(
@@ -86,7 +100,30 @@ class ObstacleControls:
         entry = self._scenery.entries[number]
         entry["position"] = pose.translation.tolist()
         entry["rpy"] = pin.rpy.matrixToRpy(pose.rotation).tolist()
+        self._show_place()
         self._changed()
+
+    @property
+    def _number(self) -> int | None:
+        """Of the one that is chosen; None where there is none."""
+        return self._which.options.index(self._which.value) if self._nodes else None
+
+    def _show_place(self) -> None:
+        if self._number is not None:
+            x, y, z = self._nodes[self._number].position
+            self._place.value = (round(x, 6), round(y, 6), round(z, 6))
+
+    def _put(self) -> None:
+        """Move the chosen one to where was typed."""
+        if self._number is not None:
+            gizmo = self._nodes[self._number]
+            gizmo.position = self._place.value
+            self._move(self._number, pose_of(gizmo))
+
+    def _take_away(self) -> None:
+        if self._number is not None:
+            left = [entry for k, entry in enumerate(self._scenery.entries) if k != self._number]
+            self._replace(left, self._scenery.folder)
 
     def _add(self, entry: dict[str, Any]) -> None:
         self._scenery.add(entry)
@@ -111,16 +148,11 @@ def entries_in(path: Path) -> list[dict[str, Any]]:
     Raises:
         InvalidGeometry: It is neither TOML nor JSON, or has no list of obstacles.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-        content = tomllib.loads(text) if path.suffix.lower() == ".toml" else json.loads(text)
-        entries = content["obstacle"]
-        if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
-            raise TypeError
-    except (ValueError, RecursionError) as reason:
-        raise InvalidGeometry(f"{path.name} cannot be read: {reason}") from None
-    except (KeyError, TypeError):
-        raise InvalidGeometry(f"{path.name} has no list of obstacles: [[obstacle]] above each") from None
+    values = toml_values if path.suffix.lower() == ".toml" else json_values
+    content = values(read_text(path, InvalidGeometry), path.name, InvalidGeometry)
+    entries = content.get("obstacle") if isinstance(content, dict) else None
+    if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+        raise InvalidGeometry(f"{path.name} has no list of obstacles: [[obstacle]] above each")
     return entries
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Mapping
 from dataclasses import replace
@@ -15,8 +14,10 @@ from numpy.typing import NDArray
 from pin_metaik.errors import InvalidConfiguration, InvalidModel
 from pin_metaik.gui.kept import plain_of, state_of
 from pin_metaik.gui.latest import Latest
+from pin_metaik.gui.look.camera import aim
 from pin_metaik.gui.look.robot import RobotDrawing, pose_of, put
 from pin_metaik.gui.pages.arms import arm as arms
+from pin_metaik.gui.pages.arms.gaps import GapLines
 from pin_metaik.gui.pages.arms.joints import JointSliders
 from pin_metaik.gui.pages.arms.obstacles import ObstacleControls
 from pin_metaik.gui.pages.arms.solving import Answer, Question, all_answers, answered, code_of, target_of
@@ -27,7 +28,6 @@ from pin_metaik.gui.words import in_words, say, told
 from pin_metaik.ik import IKSolutions
 
 GHOST, OTHERS = (120, 160, 210), (150, 150, 160)
-FIELD = math.radians(45.0)  # of view, from top to bottom
 
 
 class ArmsPage:
@@ -67,6 +67,7 @@ class ArmsPage:
         with gui.add_folder("Code", expand_by_default=False):
             self._code = gui.add_markdown("")
         tab.client.scene.add_grid(f"{ROOT}/ground", width=6.0, height=6.0, cell_size=0.5, plane="xy")
+        self._gaps = GapLines(tab)
         self._gizmo: Any = None
         self._robot: RobotDrawing | None = None
         self._last_good: RobotDrawing | None = None
@@ -147,7 +148,7 @@ class ArmsPage:
             put(self._gizmo, pin.XYZQUATToSE3(np.array(state.target)))
         else:
             put(self._gizmo, self._tip())
-        self._aim_camera(drawing.size)
+        aim(self._tab, drawing.size * np.array([1.7, 1.5, 1.2]), drawing.size * np.array([0.0, 0.0, 0.4]))
         self._show_target()
         self._ask()
 
@@ -167,13 +168,6 @@ class ArmsPage:
         with self._sliders_box:
             chain = self._arm.chain
             self._sliders = JointSliders(self._tab, chain, chain.x(self._q), self._slid)
-
-    def _aim_camera(self, size: float) -> None:
-        camera = self._tab.client.camera
-        camera.fov = FIELD
-        camera.up_direction = (0.0, 0.0, 1.0)
-        camera.position = (1.7 * size, 1.5 * size, 1.2 * size)
-        camera.look_at = (0.0, 0.0, 0.4 * size)
 
     def _tip(self) -> pin.SE3:
         """Pose of the tip where the robot is."""
@@ -235,6 +229,7 @@ class ArmsPage:
             self._q = result.q
         self._robot.show(result.q)
         self._robot.redden(set(answer.colliding))
+        self._gaps.show(answer.nearest)
         self._last_good.visible = not result.success
         if not result.success:
             self._last_good.show(self._q)

@@ -10,7 +10,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from pin_metaik.collision import CollisionWorld
+from pin_metaik.collision import CollisionWorld, Distance
 from pin_metaik.gui.pages.arms.arm import Arm
 from pin_metaik.ik import IKResult, IKSolutions, IKSolver, Target, solve_ik, solve_ik_all
 from pin_metaik.ik.criteria import limit_proximity, neg_manipulability
@@ -18,6 +18,7 @@ from pin_metaik.optimize import Budget
 
 DEADLINE = 0.1  # s
 LIVE = IKSolver(budget=Budget(seconds=DEADLINE))
+MEASURED = 12  # obstacles whose distances are shown
 LIMIT = 32  # solutions that are shown
 ALL = 2.0  # s for all solutions
 
@@ -51,6 +52,7 @@ class Answer:
         manipulability: Of the task's Jacobian there, by Yoshikawa's measure.
         room: Of the joint nearest to a limit: 1 in mid-range, 0 at a limit.
         colliding: Links that collide.
+        nearest: To each obstacle, what of the robot is nearest to it, and where.
         answered: Time it was there, s.
     """
 
@@ -59,6 +61,7 @@ class Answer:
     manipulability: float
     room: float
     colliding: frozenset[str]
+    nearest: tuple[Distance, ...]
     answered: float
 
     @property
@@ -76,10 +79,18 @@ class Answer:
             f"| away from the target | {1e3 * result.position_error:.3g} mm, {result.orientation_error:.3g} rad |\n"
             f"| manipulability | {self.manipulability:.4g} |\n"
             f"| room to the nearest limit | {100 * self.room:.0f} % of the way from mid-range |\n"
+            f"{self._clear()}"
             f"| evaluations | {result.evaluations:,} |\n"
             f"| found in | {1e3 * result.seconds:.3g} ms |\n"
             f"| shown after | {1e3 * self.latency:.3g} ms |\n"
         )
+
+    def _clear(self) -> str:
+        """A row on the obstacle that is nearest."""
+        if not self.nearest:
+            return ""
+        least = min(self.nearest, key=lambda one: one.distance)
+        return f"| nearest to an obstacle | {least.first} to {least.second}: {1e3 * least.distance:.3g} mm |\n"
 
 
 def target_of(pose: pin.SE3, orientation: bool) -> Target:
@@ -93,12 +104,14 @@ def answered(question: Question) -> Answer:
     result = solve_ik(chain, question.target, question.q, solver=LIVE, world=world)
     problem, X = result.problem, result.x[None]
     contacts = () if world is None else world.pairs_in_collision(result.q)
+    obstacles = () if world is None else world.obstacles[:MEASURED]
     return Answer(
         question,
         result,
         -float(neg_manipulability(problem, X, X[0])[0]),
         1.0 - float(limit_proximity(problem, X, X[0])[0]),
         frozenset(name for contact in contacts for name in contact[:2]),
+        tuple(world.min_distance(result.q, of=obstacle.name) for obstacle in obstacles) if world is not None else (),
         time.perf_counter(),
     )
 

@@ -6,23 +6,20 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pinocchio as pin
 
 from pin_metaik.compare import CASES, Results, Task, read_results, summarise
 from pin_metaik.compare.folder.manifest import MANIFEST
 from pin_metaik.compare.report.parts import Value
 from pin_metaik.compare.report.worst import worst
-from pin_metaik.compare.results.statistics import ecdf
 from pin_metaik.compare.trials.work_item import WorkItem
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.gui.look.curves import CurvePlot
 from pin_metaik.gui.pages.arms.arm import names
+from pin_metaik.gui.pages.comparisons.figures import Figures
 from pin_metaik.gui.tab import Tab
 from pin_metaik.lookup import lookup
 
 ALL = "all"
-FEWEST, POINTS = 4.0, 200  # evaluations at which the curves begin, and how many points they have
 ARMS = "arms"
 
 
@@ -80,7 +77,7 @@ class ComparisonsPage:
                         self._inputs[method].on_update(tab.doing(self._show))
             self._about = gui.add_markdown("")
             self._table = gui.add_markdown("")
-            self._plot = CurvePlot(gui, "kernel evaluations", "share solved")
+            self._figures = Figures(gui, results)
             with gui.add_folder("Hardest targets"):
                 rows = worst(results, "FOLDER").tables[0].rows
                 self._hardest = {f"{row[0]} / {row[1]} / {row[2]}: {row[3]}": tuple(row) for row in rows}
@@ -100,9 +97,6 @@ class ComparisonsPage:
         entry = results.cases[case]
         self._about.content = f"{entry.about} {entry.success}"
         lines = ["| method | solved | 95 % interval | evaluations | ms |", "|---|---|---|---|---|"]
-        most = max((trial.budget for trial in results.rows(case=case)), default=FEWEST + 1.0)
-        at = np.geomspace(FEWEST, most, POINTS)
-        curves = {}
         for method in methods:
             rows = results.rows(robot=robot, case=case, method=method)
             found = summarise(rows)
@@ -111,11 +105,8 @@ class ComparisonsPage:
             ms = "-" if found.seconds is None else f"{1e3 * found.seconds[0]:.3g}"
             shares = f"{100 * low:.1f} to {100 * high:.1f} %"
             lines.append(f"| {method} | {found.solved} of {found.trials} | {shares} | {spent} | {ms} |")
-            if method in results.rankable:
-                counted = [t.evaluations if t.solved and t.evaluations is not None else np.inf for t in rows]
-                curves[method] = (at, ecdf(counted, at))
         self._table.content = "\n".join(lines)
-        self._plot.show(curves)
+        self._figures.show(robot, case, methods)
 
     def _replay(self, row: tuple[Value, ...]) -> None:
         """Open the page of arms with the target of a task, which is drawn again."""

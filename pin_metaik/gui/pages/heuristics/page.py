@@ -274,5 +274,5 @@ class HeuristicsPage:
         for run in self._runs:
             run.stop()
         self._records, self._runs = [], []
-        self._plot.show({"none": ([], [])})
+        self._plot.show({})
         self._say()

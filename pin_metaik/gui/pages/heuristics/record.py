@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.errors import InvalidSetting
-from pin_metaik.files import known_keys
+from pin_metaik.files import json_values, known_keys
 from pin_metaik.gui.pages.heuristics.tasks import Outcome
 from pin_metaik.processes import Told
 
@@ -72,8 +72,8 @@ class Record:
         Raises:
             InvalidSetting: It is none.
         """
+        content = json_values(text, place, InvalidSetting)
         try:
-            content = json.loads(text)
             if not isinstance(content, dict):
                 raise TypeError("it is no table")
             known_keys(content, place, InvalidSetting, KEYS)
@@ -85,9 +85,7 @@ class Record:
             outcome = None if ended is None else Outcome(**{**ended, "x": np.asarray(ended["x"], dtype=float)})
             evaluations, best = trace.T.tolist()
             record = Record(str(content["label"]), dict(content["task"]), evaluations, best, populations)
-        except InvalidSetting:
-            raise
-        except (ValueError, TypeError, KeyError, RecursionError) as reason:
+        except (ValueError, TypeError, KeyError) as reason:
             raise InvalidSetting(f"{place} is no run of the toolbox: {reason}") from None
         record.outcome = outcome
         return record

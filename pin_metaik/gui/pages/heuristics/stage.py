@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from pin_metaik.gui.look.camera import aim
 from pin_metaik.gui.look.map import MapDrawing, beside, look_down
 from pin_metaik.gui.look.robot import RobotDrawing
 from pin_metaik.gui.pages.heuristics.tasks import ArmTask, PathTask
@@ -108,9 +109,6 @@ def set_up(tab: Tab, number: int, of: int, task: PathTask | ArmTask) -> Stage:
         return MapStage(tab, number, task.scene, task.radius)
     stage = ArmStage(tab, number, task)
     size, right = stage.size, 1.1 * (of - 1) * stage.size
-    camera = tab.client.camera
-    camera.fov = np.radians(45.0)
-    camera.up_direction = (0.0, 0.0, 1.0)
-    camera.position = (right + 0.3 * size, -(1.9 + 0.7 * (of - 1)) * size, 1.1 * size)
-    camera.look_at = (right, 0.0, 0.45 * size)
+    eye = (right + 0.3 * size, -(1.9 + 0.7 * (of - 1)) * size, 1.1 * size)
+    aim(tab, eye, (right, 0.0, 0.45 * size))
     return stage

@@ -13,7 +13,7 @@ from pin_metaik.gui.look.map import GOAL, START, MapDrawing
 from pin_metaik.gui.tab import ROOT, Tab
 from pin_metaik.mobile import Scene
 
-MODES = ("Look", "Draw obstacles", "Take obstacles away")
+LOOK, DRAW, TAKE, VIA = MODES = ("Look", "Draw obstacles", "Take obstacles away", "Add via points")
 CORNERS = (200, 120, 20)
 FEWEST, MOST = 3, 200  # corners of an obstacle
 Point = tuple[float, float]
@@ -33,11 +33,12 @@ class MapEditor:
     Args:
         tab: The tab.
         world: The map at first.
-        changed: Called with the map after every change.
+        changed: Called after every change of the map.
+        via: Called with a place that was clicked as a via point.
     """
 
-    def __init__(self, tab: Tab, world: Scene, changed: Callable[[Scene], None]) -> None:
-        self._tab, self._changed = tab, changed
+    def __init__(self, tab: Tab, world: Scene, changed: Callable[[], None], via: Callable[[Point], None]) -> None:
+        self._tab, self._changed, self._via = tab, changed, via
         self.world = world
         self.map = MapDrawing(tab, f"{ROOT}/map", world)
         self._corners: list[Point] = []
@@ -50,13 +51,17 @@ class MapEditor:
         self._click = tab.client.scene.on_click()(self._clicked)
         scale = 0.12 * self.map.width
         flat: dict[str, Any] = {"active_axes": (True, True, False), "disable_rotations": True, "depth_test": False}
-        self._ends = {}
+        self._ends: dict[str, Any] = {}
+        self._places: dict[str, Any] = {}
         for role, colour in (("start", START), ("goal", GOAL)):
             x, y = getattr(world, role)
             gizmo = tab.client.scene.add_transform_controls(f"{ROOT}/{role}", scale=scale, position=(x, y, 0.0), **flat)
             tab.client.scene.add_icosphere(f"{ROOT}/{role}/ball", 0.012 * self.map.width, color=colour)
             gizmo.on_update(tab.doing(self._dragged))
             self._ends[role] = gizmo
+            typed = gui.add_vector2(f"{role.capitalize()}, m", (float(x), float(y)), step=0.01)
+            typed.on_update(tab.doing(self._typed))
+            self._places[role] = typed
 
     def take(self, world: Scene) -> None:
         """Show another map, and tell of it."""
@@ -65,7 +70,8 @@ class MapEditor:
         self.map.redraw(world)
         for role, gizmo in self._ends.items():
             gizmo.position = (*getattr(world, role), 0.0)
-        self._changed(world)
+            self._places[role].value = tuple(getattr(world, role))
+        self._changed()
 
     def close(self) -> None:
         """Hear no more clicks; a tab that is gone has none."""
@@ -79,16 +85,18 @@ class MapEditor:
 
     def _at(self, place: Point) -> None:
         """A click on the ground."""
-        if self._mode.value == MODES[1]:
+        if self._mode.value == DRAW:
             if len(self._corners) >= MOST:
                 raise InvalidGeometry(f"an obstacle that is drawn has at most {MOST} corners")
             self._corners.append(place)
             self._draw_corners()
-        elif self._mode.value == MODES[2]:
+        elif self._mode.value == TAKE:
             here = shapely.Point(place)
             left = tuple(one for one in self.world.obstacles if not one.covers(here))
             if len(left) < len(self.world.obstacles):
                 self._replace(left)
+        elif self._mode.value == VIA:
+            self._via(place)
 
     def _close(self) -> None:
         """Make an obstacle of the corners."""
@@ -123,8 +131,19 @@ class MapEditor:
         self._said.content = f"{count} corners; *Close* makes an obstacle of them." if count else ""
 
     def _dragged(self) -> None:
-        start, goal = (tuple(map(float, gizmo.position[:2])) for gizmo in self._ends.values())
+        for role, gizmo in self._ends.items():
+            self._places[role].value = tuple(round(float(value), 4) for value in gizmo.position[:2])
+        self._between(*(gizmo.position[:2] for gizmo in self._ends.values()))
+
+    def _typed(self) -> None:
+        for role, gizmo in self._ends.items():
+            gizmo.position = (*self._places[role].value, 0.0)
+        self._between(*(place.value for place in self._places.values()))
+
+    def _between(self, *ends: tuple[float, float]) -> None:
+        """Another start and goal."""
+        start, goal = (tuple(map(float, end)) for end in ends)
         self.world = self.world.between(start, goal)
         self.map.points("start", [start], START, 2.2)
         self.map.points("goal", [goal], GOAL, 2.2)
-        self._changed(self.world)
+        self._changed()

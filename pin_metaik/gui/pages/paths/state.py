@@ -10,6 +10,7 @@ from pin_metaik.arguments import checked
 from pin_metaik.gui.pages.algorithms import made
 from pin_metaik.lookup import lookup
 from pin_metaik.mobile import VEHICLES, Scene
+from pin_metaik.mobile.motion.result import Method
 from pin_metaik.mobile.world.scene import scene_of
 from pin_metaik.optimize.settings import few, one_of, whole, within
 
@@ -38,6 +39,9 @@ class PathsState:
         iterations: Generations.
         seed: Of every random choice.
         vehicle: Whose limits the motion keeps.
+        speeds: How its speeds are found: ``dp``, ``de`` or ``ann``.
+        hand: Via points of the way by hand, m.
+        ways: Ways round that are looked for.
     """
 
     scene: Mapping[str, Any] = field(default_factory=lambda: dict(FIRST))
@@ -51,12 +55,17 @@ class PathsState:
     iterations: int = 100
     seed: int = 0
     vehicle: str = "nomad200"
+    speeds: Method = "dp"
+    hand: tuple[tuple[float, float], ...] = ()
+    ways: int = 3
 
     def __post_init__(self) -> None:
         within("radius", self.radius, 0)
         within("margin", self.margin, 0)
         few("via", self.via)
         few("iterations", self.iterations)
+        few("ways", self.ways)
+        one_of("speeds", self.speeds, Method)
         whole("seed", self.seed, 0)
         one_of("fitness", self.fitness, Literal["paper", "exact"])
         lookup("vehicle", self.vehicle, VEHICLES)

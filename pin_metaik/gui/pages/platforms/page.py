@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from pin_metaik.gui.kept import plain_of, state_of
+from pin_metaik.gui.look.camera import aim
 from pin_metaik.gui.pages.platforms.simulator import Simulator, home_of
 from pin_metaik.gui.pages.platforms.state import FIRST, PlatformsState
 from pin_metaik.gui.pages.platforms.wizard import Wizard
@@ -36,10 +37,8 @@ class PlatformsPage:
         with gui.add_folder("Design wizard"):
             Wizard(tab, self._mechanism, self._take)
         height, radius = float(pose[2, 3]), float(self._mechanism.geometry.base_radius)
-        camera = tab.client.camera
-        camera.up_direction = (0.0, 0.0, 1.0)
-        camera.position = (2.2 * radius + height, 1.6 * radius + height, 1.1 * height + radius)
-        camera.look_at = (0.0, 0.0, 0.5 * height)
+        eye = (2.2 * radius + height, 1.6 * radius + height, 1.1 * height + radius)
+        aim(tab, eye, (0.0, 0.0, 0.5 * height))
 
     def kept(self) -> dict[str, Any]:
         """See ``Page``."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import ceil, floor
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,8 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from pin_metaik.errors import InvalidConfiguration
+from pin_metaik.gui.forms import fine
+from pin_metaik.gui.look import scale
 from pin_metaik.gui.look.curves import CurvePlot
 from pin_metaik.gui.look.platform import PlatformDrawing
 from pin_metaik.gui.look.player import Player
@@ -33,7 +36,6 @@ from pin_metaik.stewart.kinematics.forward import level
 from pin_metaik.stewart.show.report import along, assess, at_pose
 from pin_metaik.watching import Watch
 
-DARK, BRIGHT = np.array([40, 20, 110]), np.array([250, 220, 60])  # of dexterity 0 and 1
 RED = (217, 31, 26)
 TILT = 0.8  # rad, as far as the sliders go
 SECONDS = 2.0  # of a straight motion
@@ -121,8 +123,10 @@ class Simulator:
             value = float(pose[number, 3] if number < 3 else turns[number - 3])
             low, high = (home[number] - reach, home[number] + reach) if number < 3 else (-TILT, TILT)
             low, high = min(low, value), max(high, value)
-            step = (high - low) / 2000.0
-            handle = gui.add_slider(name, min=float(low), max=float(high), step=step, initial_value=value)
+            step, decimals = fine(low, high)
+            low, high = (round(edge(end / step) * step, decimals) for edge, end in ((floor, low), (ceil, high)))
+            handle = gui.add_slider(name, min=low, max=high, step=step, initial_value=round(value, decimals))
+            handle.value = value  # all of its digits: only what is shown is rounded
             handle.on_update(self._tab.doing(self._show))
             self._sliders.append(handle)
         level_it = gui.add_button("Back to the middle")
@@ -192,6 +196,7 @@ class Simulator:
         cells = gui.add_number("Cells along an axis", 24, min=4, max=120, step=1)
         survey = gui.add_button("Survey")
         survey.on_click(self._tab.doing(lambda: self._survey(int(cells.value))))
+        scale.legend(gui, "local dexterity nu, no unit", "singular", "isotropic")
         self._survey_words = gui.add_markdown("")
 
     def _survey(self, cells: int) -> None:
@@ -207,8 +212,7 @@ class Simulator:
             return
         workspace: Workspace = run.result
         index = np.argwhere(workspace.reached.any(axis=-1))
-        nu = workspace.nu.max(axis=-1)[tuple(index.T)][:, None]
-        colours = (DARK + nu * (BRIGHT - DARK)).astype(np.uint8)
+        colours = scale.colours(workspace.nu.max(axis=-1)[tuple(index.T)])
         scene = self._tab.client.scene
         points = workspace.position_of(index).astype(np.float32)
         size = 0.25 * float(workspace.cells.volume) ** (1.0 / 3.0)

@@ -24,13 +24,16 @@ from pin_metaik.stewart import (
     load_mechanism,
     mechanism_names,
     new_mechanism,
+    new_servo_mechanism,
     read_mechanism,
     to_toml,
 )
 from pin_metaik.stewart.show.report import outcome
 from pin_metaik.watching import Watch
 
-FREE = ("base_radius", "platform_radius", "base_angles", "platform_angles", "shortest", "longest")
+SIZES = ("base_radius", "platform_radius", "base_angles", "platform_angles")
+LINEAR, SERVO = "change their length", "are rods moved by servos"
+OF_LEGS = {LINEAR: ("shortest", "longest"), SERVO: ("horn", "rod", "directions")}
 ELSEWHERE = ("ranges", "grid", "algorithm")  # of a task: steps of their own
 MM = 1e-3
 
@@ -104,18 +107,32 @@ class Wizard:
         save = gui.add_button("Download the mechanism")
         save.on_click(tab.doing(lambda: tab.download(f"{self._mechanism.name}.toml", to_toml(self._mechanism))))
         legs = gui.add_number("Legs", 6, min=3, max=6, step=1)
-        kind = gui.add_text("Type", "3x3", hint=f"Joints a side, base first: {', '.join(NAMED)} ...")
-        radii = gui.add_vector2("Radii, mm", (geometry.base_radius / MM, geometry.platform_radius / MM), step=0.1)
+        kind = gui.add_text("Type", geometry.type, hint=f"Joints a side, base first: {', '.join(NAMED)} ...")
+        moved = gui.add_dropdown("Legs that", tuple(OF_LEGS), initial_value=self._moved)
+        radii = gui.add_vector2("Radii, mm", _mm(geometry.base_radius, geometry.platform_radius), step=0.1)
         low, high = limits.span if geometry.servos is None else (0.25, 0.35)
-        lengths = gui.add_vector2("Legs, mm", (low / MM, high / MM), step=0.1, hint="Retracted and extended.")
+        lengths = gui.add_vector2("Shortest and longest, mm", _mm(low, high), step=0.1)
+        servos = geometry.servos
+        horn, rod = (0.02, 0.12) if servos is None else (float(np.ravel(each)[0]) for each in (servos.horn, servos.rod))
+        parts = gui.add_vector2("Horn and rod, mm", _mm(horn, rod), step=0.1)
+
+        def show() -> None:
+            lengths.visible, parts.visible = moved.value == LINEAR, moved.value == SERVO
 
         def begin() -> None:
-            (rb, rm), (shortest, longest) = radii.value, lengths.value
-            sizes = (rb * MM, rm * MM, shortest * MM, longest * MM)
-            self._take(new_mechanism(kind.value, *sizes, legs=int(legs.value)))
+            new, pair = (new_mechanism, lengths) if moved.value == LINEAR else (new_servo_mechanism, parts)
+            sizes = [value * MM for value in (*radii.value, *pair.value)]
+            self._take(new(kind.value, *sizes, legs=int(legs.value)))
 
+        show()
+        moved.on_update(tab.doing(show))
         fresh = gui.add_button("Begin with this type")
         fresh.on_click(tab.doing(begin))
+
+    @property
+    def _moved(self) -> str:
+        """What its legs do."""
+        return LINEAR if self._mechanism.geometry.servos is None else SERVO
 
     def _furnish_joints(self, gui: Any) -> None:
         tab, mechanism = self._tab, self._mechanism
@@ -141,8 +158,8 @@ class Wizard:
             gui.add_markdown("This mechanism has no task: begin with a type, or take one that has.")
             return
         gui.add_markdown("A number is fixed, `0.1..0.2` is free in between; m and rad; empty as it is.")
-        ranges = self._mechanism.task.ranges
-        rest = tuple(name for name in vars(ranges) if name not in FREE)
+        ranges, free = self._mechanism.task.ranges, (*SIZES, *OF_LEGS[self._moved])
+        rest = tuple(name for name in vars(ranges) if name not in free)
         self._spans = SettingsForm(self._tab, ranges, skip=rest)
 
     def _furnish_task(self) -> None:
@@ -209,3 +226,8 @@ class Wizard:
     def _take_result(self) -> None:
         if self._found is not None:
             self._take(self._found.mechanism)
+
+
+def _mm(first: float, second: float) -> tuple[float, float]:
+    """Two lengths, m, as they are shown: to a nanometre."""
+    return round(first / MM, 6), round(second / MM, 6)

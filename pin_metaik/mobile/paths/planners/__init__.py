@@ -1,1 +1,1 @@
-"""Planners that others made: A* on a grid, and trees and roadmaps of random samples, for comparison."""
+"""Planners of other packages, for comparison: A* on a grid, and trees and roadmaps of random samples."""

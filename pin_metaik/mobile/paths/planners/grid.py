@@ -25,14 +25,14 @@ STEPS = ((0, 1), (1, 0), (1, 1), (1, -1))  # rows and columns to one of each pai
 @checked
 @dataclass(frozen=True)
 class GridAStar:
-    """The shortest way over the middles of square cells, from each to its eight neighbours.
+    """A*: the shortest path over the centres of square cells, each joined to its eight neighbours.
 
-    Lines between neighbours are tested exactly, so that the way is free; it has no other directions than eight, which
-    costs up to 8.24 percent in the open, and gaps narrower than about a cell may be missed. It ends by itself: it tests
-    the lines of the whole grid, however small or large the budget is.
+    Lines between neighbours are tested exactly, so that the path is free. Having only eight directions makes it up to
+    8.24 percent too long in the open, and gaps narrower than about a cell may be missed. It ignores the budget: it
+    tests the lines of the whole grid.
 
     Attributes:
-        cells: Along the longer side of the workspace.
+        cells: Number of cells along the longer side of the workspace.
     """
 
     cells: int = 100
@@ -44,7 +44,7 @@ class GridAStar:
 
     @checked
     def route(self, problem: PathProblem, tests: LineTests, rng: np.random.Generator) -> Found:
-        """The shortest way over the grid; None if the grid has none."""
+        """The shortest path over the grid; ``path`` is None if there is none."""
         need("A* on a grid", "planners", "networkx")
         import networkx as nx
 

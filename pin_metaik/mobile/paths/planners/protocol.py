@@ -1,4 +1,4 @@
-"""What a path planner is: it looks for a path of a problem, and the straight lines that it tests are counted."""
+"""The protocol of a path planner: it searches a path for a problem, and its tests of straight lines are counted."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Found:
 
     Attributes:
         path: From start to goal; None if it found none.
-        trace: Lines tested and length of the best path so far (g, 2), for planners that go on to improve theirs.
+        trace: (g, 2) lines tested and length of the best path so far, for planners that improve their path.
     """
 
     path: Path | None
@@ -35,7 +35,7 @@ class Found:
 
 @runtime_checkable
 class PathPlanner(Protocol):
-    """Anything that looks for a path; its settings are fields of a frozen dataclass."""
+    """A path planner; its settings are fields of a frozen dataclass."""
 
     def route(self, problem: PathProblem, tests: LineTests, rng: np.random.Generator) -> Found:
         """Look for a path until ``tests.spent``.
@@ -61,7 +61,7 @@ class LineTests:
         if not budget.ends:
             raise InvalidBudget("this search might never end: give the budget evaluations=... or seconds=...")
         if budget.target is not None:
-            raise InvalidBudget("a target is for metaheuristics: other planners do not look at a cost")
+            raise InvalidBudget("a target is for metaheuristics: other planners minimise no cost")
         self._core, self._budget, self._watch, self._check = space.core, budget, watch, check
         self._began = perf_counter()
         self.count = 0

@@ -33,15 +33,15 @@ _ONE = Lock()  # at a time: OMPL's seeds and its log are those of the process
 @checked
 @dataclass(frozen=True)
 class RandomTree:
-    """A tree that grows from the start towards random places until it reaches the goal.
+    """A tree that grows from the start towards random samples until it reaches the goal.
 
     RRT (LaValle 1998) and RRTConnect (Kuffner and LaValle 2000) end with their first path; RRTstar (Karaman and
     Frazzoli 2011) and InformedRRTstar (Gammell, Srinivasa and Barfoot 2014) improve theirs until the budget is spent.
 
     Attributes:
-        planner: Which of them.
-        range: Longest edge, in the scene's unit; None for OMPL's choice, a fifth of the workspace's diagonal.
-        goal_bias: How often the goal is the random place; RRTConnect, which grows a tree from the goal, has none.
+        planner: Name of the planner.
+        range: Longest edge, in the scene's unit; None: OMPL's default, a fifth of the workspace's diagonal.
+        goal_bias: Probability with which the goal is sampled; RRTConnect, which grows a tree from the goal, has none.
     """
 
     planner: Tree = "RRTstar"
@@ -85,14 +85,14 @@ class RandomTree:
 @checked
 @dataclass(frozen=True)
 class Roadmap:
-    """A probabilistic roadmap (Kavraki, Svestka, Latombe and Overmars 1996), and the shortest way over it.
+    """A probabilistic roadmap (Kavraki, Svestka, Latombe and Overmars 1996), and the shortest path over it.
 
-    The roadmap grows until the budget is spent; it knows nothing of start and goal, which are then joined to their
-    nearest places on it. OMPL's own search runs beside the growing in a thread of its own, with another result each
-    time, so the way over the map is looked for here.
+    The roadmap grows, independently of start and goal, until the budget is spent; start and goal are then joined to
+    their nearest vertices. The path over the roadmap is searched here and not by OMPL, whose search runs in a thread
+    beside the growing and gives another result each time.
 
     Attributes:
-        nearest: Places that start and goal are joined to at most.
+        nearest: Largest number of vertices that start and goal are each joined to.
     """
 
     nearest: int = 20
