@@ -656,6 +656,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "timing.draw_timed": lambda: {"timed": timed()},
     "mik.IKResult.as_dict": dict,
     "mik.IKSolutions.as_dict": dict,
+    "mik.IKSolutions.best": lambda: {"criterion": "nearest", "q0": chain().reference},
     "mik.SelfMotionCurve.as_dict": dict,
     "mik.SelfMotionCurve.best": lambda: {"criterion": "nearest"},
     "mik.SelfMotionCurve.free": lambda: {"world": mik.CollisionWorld(mik.load_robot("panda")), "step": 1.0},
@@ -791,6 +792,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
         "world": None,
         "rng": 0,
     },
+    "mik.Weighted": lambda: {"criterion": "nearest", "joints": {chain().names[0]: 3.0}},
     "mik.solve_ik_all": lambda: {
         "chain": chain(),
         "target": POSE,
@@ -1506,6 +1508,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     },
     "mobile.load_vehicle": lambda: {"source": "nomad200"},
     "mobile.mobile_robot": lambda: {"vehicle": mobile.NOMAD_200, "height": 0.8},
+    "mobile.path_through": lambda: {"problem": planning(), "via": [(5.0, 5.0)]},
     "mobile.plan_alternatives": lambda: {"problem": planning(), "count": 2},
     "mobile.plan_path": lambda: {
         "problem": planning(),

@@ -271,8 +271,10 @@ class Collection:
                 self._tell(total)
         if not boxes.done:
             return
-        kept = kept[~self._near_solution(kept)]
+        kept, known = kept[~self._near_solution(kept)], self.known
         self._add_from(problem.limits.clip(kept[:, :n]), len(kept) + 1, branch=False)
+        if self.known > known:
+            self._keep_exact()
         if self._are_clear(boxes, kept[~self._near_solution(kept)]):
             self.complete = Proof.BOXES
 

@@ -70,21 +70,6 @@ class Weighted:
             if not 0.0 <= weight < math.inf:
                 raise InvalidSetting(f"the weight of a joint is a number of at least 0, got {name}={weight:g}")
 
-    def of(self, names: tuple[str, ...]) -> Array:
-        """Weights (n,) of coordinates by their names.
-
-        Raises:
-            UnknownName: A joint is not among them.
-        """
-        for name in self.joints:
-            if name not in names:
-                raise UnknownName("joint of the chain", name, set(names))
-        return np.array([self.joints.get(name, 1.0) for name in names])
-
-    def measure(self, problem: IKProblem, X: Array, x0: Array) -> Array:
-        """Numbers (k,) for coordinates X (k, n) and a start x0 (n,)."""
-        return WEIGHTED[self.criterion](problem, X, x0, self.of(problem.chain.names))
-
 
 Selection: TypeAlias = str | Weighted | Criterion
 """What to choose by: a criterion's name, one with weights, or a function of a configuration q (nq,)."""
@@ -155,12 +140,29 @@ def measure_of(select: Selection) -> Measure:
         UnknownName: If there is no criterion of that name.
     """
     if isinstance(select, Weighted):
-        return select.measure
+        return partial(_weighted, select)
     if not isinstance(select, str):
         return _measured_by(select)
     if select not in CRITERIA:
         raise UnknownName("selection", select, {"first", *CRITERIA})
     return CRITERIA[select]
+
+
+def weights_of(select: Weighted, names: tuple[str, ...]) -> Array:
+    """Weights (n,) of coordinates by their names.
+
+    Raises:
+        UnknownName: A joint is not among them.
+    """
+    for name in select.joints:
+        if name not in names:
+            raise UnknownName("joint of the chain", name, set(names))
+    return np.array([select.joints.get(name, 1.0) for name in names])
+
+
+def _weighted(select: Weighted, problem: IKProblem, X: Array, x0: Array) -> Array:
+    """The measure of a criterion with weights."""
+    return WEIGHTED[select.criterion](problem, X, x0, weights_of(select, problem.chain.names))
 
 
 def _measured_by(criterion: Criterion) -> Measure:

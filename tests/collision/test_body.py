@@ -63,7 +63,9 @@ def test_a_robot_that_has_only_looks_is_checked_by_them_and_a_warning_says_so(tm
 
 def test_what_a_robot_looks_like_is_not_checked_where_that_is_not_wanted(tmp_path: Path) -> None:
     seen = BOX.replace("collision", "visual").format("1 1 1")
-    with pytest.raises(InvalidGeometry, match="two has no collision geometry, and its visual geometry is not to be"):
+    with pytest.raises(
+        InvalidGeometry, match="two has no collision geometry, and visual=False leaves out its visual geometry"
+    ):
         mik.CollisionWorld(robot(tmp_path, seen, seen), visual=False)
     assert mik.CollisionWorld(robot(tmp_path, BOX.format("1 1 1"), seen), visual=False).names == ("a", "c")
 

@@ -113,7 +113,7 @@ ROBOTS = {
         "outside of what was uploaded",
     ),
     "wrong.toml": (b"name = 'x'\nconvention = 'sideways'", ""),
-    "no.exe": (b"MZ", "none of .urdf"),
+    "no.exe": (b"MZ", "neither one of .urdf"),
     "bomb.zip": (BOMB, "larger than 64 MiB"),
     "climbs.zip": (archive("../a.urdf", b"<robot/>"), "reaches out"),
 }

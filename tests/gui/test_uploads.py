@@ -36,7 +36,7 @@ def test_a_name_leads_nowhere(name: str, tmp_path: Path) -> None:
 def test_what_is_too_large_or_of_another_kind_is_told_and_not_kept(tmp_path: Path) -> None:
     for name, content, words in (
         ("a.toml", b" " * (MOST + 1), "MiB"),
-        ("a.exe", b"", "none of .urdf, .toml"),
+        ("a.exe", b"", "neither one of .urdf, .toml"),
         ("a.zip", b"PK\x03\x04nonsense", "not a .zip"),
         ("a.zip", packed({"a.txt": b""}), "no file of the kinds"),
         ("a.zip", packed({f"{k}.toml": b"" for k in range(MOST_FILES + 1)}), "files"),

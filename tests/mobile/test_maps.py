@@ -246,7 +246,7 @@ def test_unknown_cells_are_as_the_reader_asks(tmp_path, suffix):
 
 def test_what_is_said_of_grids_is_refused_where_none_is():
     for option in ({"unknown": "free"}, {"resolution": 0.1}, {"threshold": 0.0}, {"specks": 2}):
-        with pytest.raises(InvalidSetting, match=rf"{next(iter(option))}: that is for an occupancy grid \(.npy, .yaml"):
+        with pytest.raises(InvalidSetting, match=rf"{next(iter(option))}: only for an occupancy grid \(.npy, .yaml"):
             load_scene("ten_obstacles", **option)
 
 

@@ -145,7 +145,7 @@ def test_what_comes_towards_a_robot_is_given_way_to_where_there_are_places() -> 
 
 
 @pytest.mark.parametrize(
-    ("place", "says"), [((0.5, 2.5), "over the start at 0 s"), ((9.5, 2.5), "stays over the goal for good")]
+    ("place", "says"), [((0.5, 2.5), "covers the start at 0 s"), ((9.5, 2.5), "stays over the goal for ever")]
 )
 def test_what_stands_on_start_or_goal_is_named(place: tuple[float, float], says: str) -> None:
     parked = mobile.MovingObstacle(mobile.Footprint.disc(0.3), [(0.0, *place)])

@@ -15,7 +15,7 @@ from pin_metaik.arguments import array, checked
 from pin_metaik.arrays import Array
 from pin_metaik.collision import CollisionWorld
 from pin_metaik.errors import InvalidConfiguration, InvalidSetting
-from pin_metaik.ik.criteria import Selection, Weighted, measure_of
+from pin_metaik.ik.criteria import Selection, Weighted, measure_of, weights_of
 from pin_metaik.ik.problem import IKProblem, check_world
 from pin_metaik.optimize.settings import positive
 
@@ -147,7 +147,7 @@ class SelfMotionCurve:
         """
         x = self.problem.chain.x(array("q", q, self.problem.chain.model.nq, error=InvalidConfiguration))
         near = Weighted("nearest", weights or {})
-        return self._least(lambda X: near.measure(self.problem, self._turned(X), x), self._rate(near))
+        return self._least(lambda X: measure_of(near)(self.problem, self._turned(X), x), self._rate(near))
 
     @checked
     def best(self, criterion: Selection) -> CurvePoint:
@@ -213,7 +213,7 @@ class SelfMotionCurve:
         """How much a criterion changes at most for each unit of joint motion; None: nothing is known."""
         limits = self.problem.limits
         if isinstance(criterion, Weighted):
-            name, weights = criterion.criterion, criterion.of(self.problem.chain.names)
+            name, weights = criterion.criterion, weights_of(criterion, self.problem.chain.names)
         else:
             name, weights = criterion if isinstance(criterion, str) else "", np.ones(len(limits.lower))
         spans = limits.upper - limits.lower
