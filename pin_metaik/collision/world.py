@@ -300,6 +300,7 @@ class CollisionWorld:
         """
         return self.checker.contacts(as_configuration(self.model, q))
 
+    @checked
     def min_distance(self, q: ArrayLike, *, of: str | None = None) -> Distance:
         """The two bodies nearest to each other at configuration q (nq,), and where; the margin does not count.
 

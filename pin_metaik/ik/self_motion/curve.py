@@ -171,6 +171,7 @@ class SelfMotionCurve:
                 raise InvalidSetting(f"criterion is a function of a configuration q (nq,), but: {error}") from error
         return self._least(lambda X: measure(self.problem, self._turned(X), self._x0), self._rate(criterion))
 
+    @checked
     def free(self, world: CollisionWorld, step: float = 0.02) -> list[tuple[float, float]]:
         """Intervals (from, to) of t without a collision, sampled at points at most ``step`` (rad and m alike) apart.
 
