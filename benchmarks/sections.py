@@ -30,7 +30,7 @@ def conditions(peers: Iterable[str] = ()) -> str:
         except PackageNotFoundError:
             packages.append(f"no {name}")
     load = ", ".join(f"{value:.1f}" for value in os.getloadavg())
-    files = re.compile(r" --(out|kept-parts|kept-scan)[ =]\S+")  # they do not change what is measured
+    files = re.compile(r" --(out|kept|kept-parts|kept-scan)[ =]\S+")  # they do not change what is measured
     command = files.sub("", " ".join(["python", f"benchmarks/{Path(sys.argv[0]).name}", *sys.argv[1:]]))
     return (
         f"`{command}`, {date.today()}, {os.cpu_count()}-core {platform.machine()}, load {load}, "
