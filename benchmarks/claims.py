@@ -156,7 +156,7 @@ def page(counts: dict[str, Counts]) -> Iterator[str]:
         "robots by name": [n for n in counts if not n.isdigit()],
         "random models": [n for n in counts if n.isdigit()],
     }
-    titles = ["number", "feasible targets", "claimed successes", "false", "answers outside limits"]
+    titles = ["models", "feasible targets", "claimed successes", "false", "answers outside limits"]
     titles += ["called out of reach", "processor time, s"]
     table = [f"| | {' | '.join(titles)} |", "|---" + len(titles) * "|---:" + "|"]
     every = {**kinds, "all": [*counts]}

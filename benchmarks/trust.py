@@ -40,13 +40,13 @@ class Promise:
 
 PROMISES = (
     Promise(
-        "A success is one: within the tolerances and inside the limits, by Pinocchio. No answer is outside the limits.",
+        "`SOLVED` is verified by Pinocchio: within the tolerances, and every answer is inside the limits.",
         ("tests/properties/test_success.py",),
         "benchmarks/claims.md",
         "| all |",
     ),
     Promise(
-        "What is called out of reach is: no target that a configuration meets is ever called so.",
+        "`UNREACHABLE` is proved: no target that some configuration meets is ever called so.",
         ("tests/properties/test_success.py", "tests/kinematics/proofs/test_soundness.py"),
         "benchmarks/claims.md",
         "| all |",
@@ -57,7 +57,7 @@ PROMISES = (
         ("tests/properties/test_sameness.py", "tests/ik/test_batch.py", "tests/ik/test_processes.py"),
     ),
     Promise(
-        "Where the world is does not matter: base and targets moved together, the answer stays.",
+        "If the base and the targets are moved together, the answer stays the same.",
         ("tests/properties/test_sameness.py",),
     ),
     Promise("Budgets hold: evaluations to the last, seconds to a fifth.", ("tests/properties/test_budgets.py",)),
@@ -68,25 +68,25 @@ PROMISES = (
         "calls of",
     ),
     Promise(
-        "So do odd files and command lines: no traceback, no crash, no hang, no gigabyte.",
+        "Odd files and command lines lead to the same: no traceback, no crash, no hang, no gigabyte.",
         ("tests/test_odd_inputs.py",),
         "benchmarks/fuzz.md",
         "| all |",
     ),
     Promise(
-        "Nothing that is done is lost, and nothing is done twice: killed, without room, or by two at once.",
+        "Long work that is killed, runs out of disk space or has two writers loses no row and doubles none.",
         ("tests/test_faults.py", "tests/compare/test_run.py"),
         "benchmarks/faults.md",
         "| `kill -9` of a comparison |",
     ),
     Promise(
-        "It goes on for ever: memory is flat, and the last call is as quick as the first.",
+        "Long runs: memory stays flat, and the last call is as quick as the first.",
         ("tests/test_load.py",),
         "benchmarks/load.md",
         "| solves |",
     ),
     Promise("Ctrl-C is heard at once, and brings what was found.", ("tests/ik/test_interrupts.py",)),
-    Promise("The lowest versions that are allowed work, and nothing asks the network.", ("tests/test_supply.py",)),
+    Promise("Nothing asks the network.", ("tests/test_supply.py",)),
 )
 
 
