@@ -32,7 +32,7 @@ def dimension_at(problem: IKProblem, x: Array) -> int:
     spare = problem.chain.n - problem.m
     if spare > 0:
         return spare
-    point = _put_onto(problem, x, int((_svd(problem, x)[1] > NEARLY).sum()))
+    point = _beside(problem, x)
     if point is None:
         return 0
     free = _free(problem, point)
@@ -46,7 +46,7 @@ def curve_through(problem: IKProblem, x: Array) -> Array | None:
 
     On a surface of solutions they are a curve on it.
     """
-    point = _put_onto(problem, x, int((_svd(problem, x)[1] > NEARLY).sum()))
+    point = _beside(problem, x)
     if point is None:
         return None
     for way in _free(problem, point):
@@ -111,6 +111,11 @@ def _svd(problem: IKProblem, x: Array) -> tuple[Array, Array, Array, Array]:
     U, S, Vt = np.linalg.svd(J.T)
     n = len(x)
     return r, U[:, : len(S)], np.append(S, np.zeros(n - len(S))), Vt.T
+
+
+def _beside(problem: IKProblem, x: Array) -> Array | None:
+    """The singular solution (n,) next to x (n,); None without one."""
+    return _put_onto(problem, x, int((_svd(problem, x)[2] > NEARLY).sum()))
 
 
 def _put_onto(problem: IKProblem, x: Array, rank: int) -> Array | None:
