@@ -15,6 +15,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -185,13 +186,7 @@ def six_row(name: str, options: argparse.Namespace) -> str:
             problem = IKProblem.of(chain, goal)
 
             def timed(solver: str, solve: Callable[[], Any], family: str = family) -> Any:
-                took: list[float] = []
-                while not took or (family == "random" and len(took) < CALLS and took[0] < LONG):
-                    began = time.thread_time()
-                    found = solve()
-                    took.append(time.thread_time() - began)
-                counts[solver].times += [min(took)] if family == "random" else []
-                return found
+                return quickest(counts[solver], solve) if family == "random" else solve()
 
             quick = timed("ours", lambda goal=goal: mik.solve_ik_all(chain, goal, certify=False))
             proved = timed("boxes", lambda goal=goal: mik.solve_ik_all(chain, goal))
@@ -199,9 +194,7 @@ def six_row(name: str, options: argparse.Namespace) -> str:
             for solver, solve in others.items():
                 answers[solver] = inside(chain, timed(solver, lambda solve=solve, pose=pose: solve(pose)))
             for solver, found in answers.items():
-                good = np.array([problem.accepts(q) for q in chain.q(chain.limits.clip(found))], dtype=bool)
-                counts[solver].wrong += int((~good).sum())
-                answers[solver] = found[good]
+                answers[solver] = right(counts[solver], problem, found)
             every = union(chain, [*answers.values(), descents(problem, rng, options.descents), x[None]])
             every = every[[singular_values(problem.linearize(one)[1])[-1] > ON_CURVE for one in every]]
             total[family] += len(every)
@@ -220,6 +213,26 @@ def six_row(name: str, options: argparse.Namespace) -> str:
         f"| {name} | {of(total)} | {of(ours.missed)}, with boxes {of(boxes.missed)} | {ours.wrong + boxes.wrong} "
         f"| {shares or 'none'} | {contradicted} | {us(ours)} | {us(boxes)} | {theirs or 'none'} |"
     )
+
+
+def quickest(count: Count, solve: Callable[[], Any]) -> Any:
+    """What a solver finds, and the least time of a few calls, or of one that takes long."""
+    took: list[float] = []
+    while not took or (len(took) < CALLS and took[0] < LONG):
+        began = time.thread_time()
+        found = solve()
+        took.append(time.thread_time() - began)
+    count.times.append(min(took))
+    return found
+
+
+def right(count: Count, problem: IKProblem, found: Floats) -> Floats:
+    """Of coordinates found (k, n), those that Pinocchio accepts; the others are counted."""
+    chain = problem.chain
+    good = np.array([problem.accepts(q) for q in chain.q(chain.limits.clip(found))], dtype=bool)
+    count.wrong += int((~good).sum())
+    accepted: Floats = found[good]
+    return accepted
 
 
 def side_by_side(options: argparse.Namespace) -> Iterator[list[str]]:
@@ -250,16 +263,8 @@ def side_rows(name: str, options: argparse.Namespace) -> list[str]:
         pose, answers = chain.poses(x)[0, 0], {}
         problem = IKProblem.of(chain, pose)
         for solver, solve in solvers.items():
-            took: list[float] = []
-            while not took or (len(took) < CALLS and took[0] < LONG):
-                began = time.thread_time()
-                found = solve(pose)
-                took.append(time.thread_time() - began)
-            counts[solver].times.append(min(took))
-            found = inside(chain, found)
-            good = np.array([problem.accepts(q) for q in chain.q(chain.limits.clip(found))], dtype=bool)
-            counts[solver].wrong += int((~good).sum())
-            answers[solver] = found[good]
+            found = inside(chain, quickest(counts[solver], partial(solve, pose)))
+            answers[solver] = right(counts[solver], problem, found)
         every = union(chain, [*answers.values(), descents(problem.exact, rng, options.few), x[None]])
         total += len(every)
         for solver, found in answers.items():
