@@ -28,7 +28,7 @@ VAIN_EACH = 15  # ... and as many more for each solution known, before a search 
 BATCH = 128  # starts between two looks at what came of them
 IN_VAIN = 180_000  # evaluations without any solution after which a search for the first one ends
 MIDDLE = 5000  # evaluations for a solution in the middle of loose tolerances before all of them is aimed at
-FOR_ROOTS = 0.5  # of the budget, to find all roots of six joints; what is left is to descend from them
+ROOTS_SHARE = 0.5  # of the budget, to find all roots of six joints; what is left is to descend from them
 ROOM = 0.1  # of the distance between distinct solutions: tolerances that may move a solution so far
 HALF = 0.25  # of it: half width of the boxes that cover all configurations
 COVERED = 16_384  # boxes that a cover may keep; more are a curve of solutions
@@ -159,7 +159,7 @@ class Collection:
         Each of them that is inside the limits has its solution in the end, or it is open whether there are more.
         """
         problem = self.problem
-        every = problem.chain._configurations(problem.targets[0].pose.homogeneous, self.state.left(FOR_ROOTS))
+        every = problem.chain._configurations(problem.targets[0].pose.homogeneous, self.state.left(ROOTS_SHARE))
         if every is None:
             return False
         self.state.spent += every.evaluations

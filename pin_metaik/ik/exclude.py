@@ -5,8 +5,9 @@ from __future__ import annotations
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.refine.descent import Descent
-from pin_metaik.ik.state import ENDLESS, SearchState
+from pin_metaik.ik.state import SearchState
 from pin_metaik.kinematics.proofs.boxes import Boxes
+from pin_metaik.kinematics.roots.real import UNBOUNDED
 
 FIRST = 500  # evaluations before the first boxes; fewer than 1 of 10,000 random targets with a solution needs more
 FAR = 3e-3  # m and rad: where the nearest is farther away by then, there is mostly nothing to be found
@@ -52,7 +53,7 @@ class Exclusion:
 
     def _look(self, boxes: Boxes, most: int, state: SearchState) -> None:
         """Look at so many boxes of one frame, and descend from those that are too small to be split."""
-        starts, end = 0, min(boxes.looked + most, FEW if boxes.arm.movers >= MANY else ENDLESS)
+        starts, end = 0, min(boxes.looked + most, FEW if boxes.arm.movers >= MANY else UNBOUNDED)
         while boxes.looked < end and starts < STARTS and not (boxes.done or state.decided or state.late()):
             before = boxes.looked
             small = boxes.look(min(end - before, CHUNK, state.left_for_boxes))

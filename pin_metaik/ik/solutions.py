@@ -122,7 +122,8 @@ class IKSolutions:
         where joints move while the frame stands still, as far as a motion that is tried shows: then q has one solution
         of each curve (1), the nearest to the start of all points 0.05 rad or m apart, and of all surfaces (2) one.
         """
-        return tuple(dimension_at(self.problem.exact, x) for x in self.x)
+        exact = self.problem.exact
+        return tuple(dimension_at(exact, x) for x in self.x)
 
     @checked
     def best(self, criterion: Selection, q0: ArrayLike | None = None) -> NDArray[np.float64]:

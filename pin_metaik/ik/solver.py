@@ -27,7 +27,8 @@ from pin_metaik.ik.refine.descent import Descent, descent_of
 from pin_metaik.ik.result import IKResult, IKStatus
 from pin_metaik.ik.self_motion.motions import RESOLUTION, find_self_motions, has_curves
 from pin_metaik.ik.starts import start_batches
-from pin_metaik.ik.state import ENDLESS, SearchState
+from pin_metaik.ik.state import SearchState
+from pin_metaik.kinematics.roots.real import UNBOUNDED
 from pin_metaik.optimize import Budget, Metaheuristic, make, minimize
 from pin_metaik.optimize.settings import whole
 from pin_metaik.randomness import Rng, as_generator, as_seed
@@ -276,7 +277,7 @@ class IKSolver:
         automatic = self.seeder == "auto" and self._measure is None and self.budget.seconds is None
         if not automatic or self._descent is None:
             return None
-        most = ENDLESS if evaluations is None else math.ceil(RESTART_SHARE * evaluations)
+        most = UNBOUNDED if evaluations is None else math.ceil(RESTART_SHARE * evaluations)
         first, few = float(min(LONG, most)), float(min(FIRST, most))
         settings = self._descent.settings(first)
         tolerances = [DEFAULT_TOLERANCE, DEFAULT_TOLERANCE]

@@ -12,9 +12,8 @@ from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.refine import Refinement
 from pin_metaik.ik.result import IKStatus
+from pin_metaik.kinematics.roots.real import UNBOUNDED
 from pin_metaik.optimize import Budget, Result
-
-ENDLESS = 2**62
 
 
 class SearchState:
@@ -68,7 +67,7 @@ class SearchState:
         """Evaluations left of this share of what a search may take."""
         total = self._budget.evaluations
         if total is None:
-            return ENDLESS
+            return UNBOUNDED
         most = total if self._patience is None else min(self._patience, total)
         return max(0, min(math.ceil(share * most) - self.searched, total - self.spent))
 
@@ -76,7 +75,7 @@ class SearchState:
     def left_for_boxes(self) -> int:
         """Boxes that may still be looked at: nine tenths of the budget at most."""
         total = self._budget.evaluations
-        return ENDLESS if total is None else max(0, min(9 * total // 10 - self._boxes, total - self.spent))
+        return UNBOUNDED if total is None else max(0, min(9 * total // 10 - self._boxes, total - self.spent))
 
     @property
     def decided(self) -> bool:

@@ -14,7 +14,8 @@ from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.refine.descent import Descent
 from pin_metaik.ik.starts import BATCH, drawn
-from pin_metaik.ik.state import ENDLESS, SearchState
+from pin_metaik.ik.state import SearchState
+from pin_metaik.kinematics.roots.real import UNBOUNDED
 from pin_metaik.optimize import Budget, Metaheuristic, minimize
 from pin_metaik.randomness import Rng, as_generator
 
@@ -85,7 +86,7 @@ class ClearSearch:
 
     def every(self) -> NDArray[np.float64] | None:
         """The first of all solutions that is free, the nearest to the one that collides first."""
-        budget = Budget(evaluations=self.state.left() if self.state.left() < ENDLESS else EVERY)
+        budget = Budget(evaluations=self.state.left() if self.state.left() < UNBOUNDED else EVERY)
         _, found, self.proof, spent = collect(
             self.problem, self.found[0], self.descent, self.rng, limit=CANDIDATES - 1, apart=APART, budget=budget
         )

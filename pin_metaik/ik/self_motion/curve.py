@@ -147,7 +147,8 @@ class SelfMotionCurve:
         """
         x = self.problem.chain.x(array("q", q, self.problem.chain.model.nq, error=InvalidConfiguration))
         near = Weighted("nearest", weights or {})
-        return self._least(lambda X: measure_of(near)(self.problem, self._turned(X), x), self._rate(near))
+        measure = measure_of(near)
+        return self._least(lambda X: measure(self.problem, self._turned(X), x), self._rate(near))
 
     @checked
     def best(self, criterion: Selection) -> CurvePoint:
