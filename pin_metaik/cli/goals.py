@@ -79,7 +79,7 @@ def _goal(kind: str, values: Mapping[str, Any]) -> Goal:
     """A goal of a kind from its fields; a pose may be x y z, or that with roll, pitch and yaw."""
     kind = kind.replace("-", "_")
     make = lookup("kind of goal", kind, SPELLED)
-    own = [field for field in fields(make) if field.init]  # type: ignore[arg-type]
+    own = [field for field in fields(make) if field.init]  # type: ignore[arg-type]  # all of them are dataclasses
     needed = tuple(one.name for one in own if one.default is MISSING)
     known_keys(values, kind, InvalidTarget, needed, tuple(one.name for one in own if one.name not in needed))
     given = {name: _pose(value) if name == "pose" else value for name, value in values.items()}

@@ -24,7 +24,7 @@ POINTS = ("grid", "clustered", "random")
 def learn(
     output: Annotated[Path, typer.Option("--output", "-o", help="Where to write the network: .npz.")],
     vehicle: VehicleName = "nomad200",
-    hidden: Annotated[list[int], typer.Option(min=1, help="Neurons of each hidden layer: --hidden 5 5.")] = [5, 5],  # noqa: B006
+    hidden: Annotated[list[int], typer.Option(min=1, help="Neurons of each hidden layer: --hidden 5 5.")] = [5, 5],  # noqa: B006  # nothing changes it
     trainer: Annotated[str, typer.Option(help=f"One of {', '.join(TRAINERS)}.")] = "lm",
     design: Annotated[
         str,
