@@ -70,9 +70,9 @@ def deaf_children() -> Iterator[None]:
 class Pressed:
     """A context manager that notes Ctrl-C, and raises ``KeyboardInterrupt`` if the code inside has swallowed it.
 
-    Some code catches every exception: a user's method, which would then return another answer than in an uninterrupted
-    run, or a callback called from C, whose exceptions Python drops. Signals come to the main thread; in another thread
-    this does nothing.
+    It is raised at the end at the latest, instead of whatever else the code inside raises. Some code catches every
+    exception: a user's method, which would then return another answer than in an uninterrupted run, or a callback
+    called from C, whose exceptions Python drops. Signals come to the main thread; in another thread this does nothing.
 
     Attributes:
         held: Whether the first Ctrl-C is only noted, for ``check`` to raise, because the work inside must not be
@@ -92,17 +92,20 @@ class Pressed:
                 signal.signal(signal.SIGINT, self._note)
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if callable(self._before):
             signal.signal(signal.SIGINT, self._before)
+        if kind is None or not issubclass(kind, KeyboardInterrupt):
+            self.check()
 
     def check(self) -> None:
-        """Raise if there was a Ctrl-C.
+        """Raise if there was a Ctrl-C that has not been raised by this before.
 
         Raises:
             KeyboardInterrupt: There was one.
         """
         if self._heard:
+            self._heard = False
             raise KeyboardInterrupt
 
     def _note(self, number: int, frame: FrameType | None) -> None:

@@ -68,10 +68,10 @@ def worked(items: Sequence[WorkItem[T]], jobs: int, backend: Backend, scheduler:
             chosen |= {"client": stack.enter_context(_cluster(scheduler)), "n_jobs": -1}
         stack.enter_context(_no_last_words())
         others = set(threading.enumerate())
-        with Pressed(held=True) as pressed:  # or it might come in a callback of weak references, which swallows it
-            results = _begun(items, chosen)
+        results: Any = None
         try:
-            pressed.check()
+            with Pressed(held=True):  # or it might come in a callback of weak references, which swallows it
+                results = _begun(items, chosen)
             for result in results:  # noqa: UP028  # `yield from` would close them before the lines below
                 yield result
         except (OSError, TimeoutError, CancelledError) as error:
@@ -84,7 +84,8 @@ def worked(items: Sequence[WorkItem[T]], jobs: int, backend: Backend, scheduler:
         except BaseException:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # joblib's, of tasks that an interrupt leaves undone
-                results.close()
+                if results is not None:
+                    results.close()
             _await_feeders(others)
             raise
 

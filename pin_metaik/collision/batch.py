@@ -98,9 +98,8 @@ def _shared(
         pool = ProcessPoolExecutor(workers, initializer=_begin, initargs=(handed, ask))
         try:
             waiting: list[tuple[slice, Future[NDArray[np.float64]]]] = []
-            with Pressed(held=True) as pressed:  # a process that is forked meanwhile hears no Ctrl-C either
+            with Pressed(held=True):  # a process that is forked meanwhile hears no Ctrl-C either
                 waiting += _submitted(pool, Q, parts, AHEAD * workers)
-            pressed.check()
             while waiting:
                 part, future = waiting.pop(0)
                 found[part] = future.result()

@@ -75,14 +75,13 @@ class Loop:
     def compiled(self, without: bool = False) -> Callable[..., Any]:
         """Numba's function, compiled now or read from the cache."""
         # broken off, numba would compile nothing more in this process
-        with Pressed(held=True) as pressed, uncollected():
+        with Pressed(held=True), uncollected():
             loop = numba.njit(fastmath=LOOSE, no_cfunc_wrapper=True, **OPTIONS)(self.function)
             loop._cache = self.machine_code
             signature = self.signatures[without]
             with nullcontext() if loop._cache.has(signature) else loop._cache.turn(), found_out_once():
                 loop.compile(signature)
             loop.disable_compile()
-            pressed.check()
         return cast(Callable[..., Any], loop)
 
     def announced(self, without: bool = False) -> Callable[..., Any]:
