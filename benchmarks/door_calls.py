@@ -606,7 +606,7 @@ CALLS: dict[str, Callable[[], Arguments]] = {
     "mik.IKProblem.at": lambda: {"q": X6},
     "mik.IKProblem.linearize": lambda: {"x": np.array(X6)},
     "mik.IKProblem.branches": lambda: {"x0": np.array(X6)},
-    "mik.IKProblem.boxes": lambda: {"t": 0, "least": 1e-3, "split": False},
+    "mik.IKProblem.boxes": lambda: {"t": 0, "least": 1e-3, "shrink": False},
     "mik.IKProblem.gaps": lambda: {"t": 0},
     "mik.IKProblem.nearest_turns": lambda: {"X": np.array([X6]), "x0": np.array(X6)},
     "mik.IKProblem.near": lambda: {"count": 3},

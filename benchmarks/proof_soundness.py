@@ -7,7 +7,7 @@ Their configurations are random, at limits, in corners, at right angles and sing
 whole tolerance, in position and orientation at once.
 
 * boxes: each target's box of all configurations is halved at random, always towards the known solution, forty times at
-  most, and shown to every test on the way.
+  most, and shown to every test on the way; and what is left of it where boxes are shrunk must hold the solution.
 * closed: closed forms judge, those of arms that are off their place as well.
 * public: ``solve_ik`` and ``solve_ik_batch`` are asked, and must not answer UNREACHABLE.
 
@@ -48,6 +48,7 @@ OFF = "~"  # before a name: joints 1e-3 off their place
 NAMED = [*CLOSED, *(OFF + robot for robot in CLOSED), *OTHERS]
 FREE: list[Free] = [WHOLE, (True, False, False), (False, False, True), (True, True, True)]
 HALVINGS = 40
+ROUNDING = 1e-9  # rad or m
 SHARE = 100_000  # boxes or targets of one part
 DEFAULT = 1e-5  # m and rad; tolerances of targets that are arrays
 FEW = mik.IKSolver(budget=mik.Budget(evaluations=4_000))  # boxes included: enough for proofs to be tried
@@ -88,7 +89,7 @@ def boxes(seed: int, count: int) -> Counts:
 
 
 def halved(arm: ProofArm, target: Feasible, free: Free, rng: np.random.Generator) -> list[bool]:
-    """Whether each box on the way from all configurations towards the solution is excluded."""
+    """Whether each box on the way from all configurations towards the solution is excluded, or loses it when shrunk."""
     pose, x, near = target.pose.copy(), target.x, math.inf if rng.random() < 0.05 else target.near
     aligned = 0.1 if all(free) else target.aligned
     axes = "zyz" if all(free) else "xyz"[free.index(True)] if any(free) else ""
@@ -99,11 +100,16 @@ def halved(arm: ProofArm, target: Feasible, free: Free, rng: np.random.Generator
     m = arm.whole.shape[1] // 2
     centre, width = arm.whole[0, :m].copy(), arm.whole[0, m:].copy()
     x = np.clip(x, centre - width, centre + width)
-    waiting, leaves, answers = np.empty((2, 2 * m)), np.empty((1, 2 * m)), []
+    waiting, leaves, answers = np.empty((2, 2 * m)), np.empty((2, 2 * m)), []
     for _ in range(rng.integers(1, HALVINGS)):
         waiting[0] = np.append(centre, width)
-        _, kept, left = cover(*arm.arrays, *asked, waiting, 1, 0.0, 1, leaves)
-        answers.append(left == 0 and kept == 0)
+        looked, kept, left = cover(*arm.arrays, *asked, waiting, 1, 0.0, 1, leaves)
+        answers.append(looked != 1 or (left == 0 and kept == 0))
+        waiting[0] = np.append(centre, width)
+        least = 10.0 ** rng.uniform(-4.0, 0.5)
+        looked, kept, left = cover(*arm.shrinking.arrays, *asked, waiting, 1, least, 1, leaves)
+        rest = np.concatenate([waiting[:left], leaves[:kept]])
+        answers.append(looked != 1 or not (np.abs(rest[:, :m] - x) <= rest[:, m:] + ROUNDING).all(axis=1).any())
         c = rng.integers(m)
         width[c] *= 0.5
         centre[c] += width[c] if x[c] > centre[c] else -width[c]

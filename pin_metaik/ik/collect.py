@@ -258,7 +258,7 @@ class Collection:
             return
         nominal = problem.chain.nominal_proof
         begin = None if nominal is None else nominal.judge(pose, 0.0, 0.0).pieces
-        boxes = problem.chain._boxes(0, pose, 0.0, 0.0, least=half, split=True, begin=begin)
+        boxes = problem.chain._boxes(0, pose, 0.0, 0.0, least=half, shrink=True, begin=begin)
         if boxes is None:
             return
         kept, total = np.empty((0, 2 * n)), self.state.spent + self.state.left_for_boxes

@@ -289,11 +289,11 @@ class IKProblem:
         return proof.judge(target.pose.homogeneous, *target.allowance)
 
     @checked
-    def boxes(self, t: int, *, least: float = TINY, split: bool = False) -> Boxes | None:
+    def boxes(self, t: int, *, least: float = TINY, shrink: bool = False) -> Boxes | None:
         """Boxes that cover all configurations, to be excluded for target t; None if no proof can come of them.
 
         Of a target with a free translation only the orientation is used; of one with two free rotations only the
-        position. ``least`` and ``split`` as for ``Chain._boxes``.
+        position. ``least`` and ``shrink`` as for ``Chain._boxes``.
         """
         self._frame(t)
         if not least > 0.0:
@@ -304,7 +304,7 @@ class IKProblem:
             return None
         begin = None if self.nominal_branches is None else self.nominal_branches.pieces
         how = near, target.tilt, free
-        return self.chain._boxes(t, target.pose.homogeneous, *how, least=least, split=split, begin=begin)
+        return self.chain._boxes(t, target.pose.homogeneous, *how, least=least, shrink=shrink, begin=begin)
 
     def near(self, count: int) -> NDArray[np.float64]:
         """Sampled coordinates (count, n) of the chain with the poses nearest to the targets, nearest first."""

@@ -382,7 +382,7 @@ class Chain:
         free: Free = WHOLE,
         *,
         least: float = TINY,
-        split: bool = False,
+        shrink: bool = False,
         begin: NDArray[np.float64] | None = None,
     ) -> Boxes | None:
         """All configurations inside the limits, to be excluded for a target; None, where they have no bounds.
@@ -394,16 +394,16 @@ class Chain:
             aligned: By how much (rad) it may be turned about axes that are not free.
             free: Which turns about the frame's own axes x, y and z are free.
             least: Half width (rad or m) below which a box is kept instead of split.
-            split: Whether the joints of a wrist are split, too; without, only the others of what is kept are short.
+            shrink: Whether boxes are shrunk around solutions; without, those kept tell nothing of a wrist's joints.
             begin: (b, 2 n) centres and half widths of boxes outside of which there is known to be no solution.
         """
         if self._moves is not None:
             moved = np.linalg.inv(self._moves[tip]) @ pose
-            return self._original._boxes(tip, moved, near, aligned, free, least=least, split=split, begin=begin)
+            return self._original._boxes(tip, moved, near, aligned, free, least=least, shrink=shrink, begin=begin)
         if (tip, free) not in self._proof_arms:
             self._proof_arms[tip, free] = proof_arm(self.paths, self.limits, tip, free)
         arm = self._proof_arms[tip, free]
-        return None if arm is None else Boxes(arm.split if split else arm, pose, near, aligned, least, begin)
+        return None if arm is None else Boxes(arm.shrinking if shrink else arm, pose, near, aligned, least, begin)
 
     def branches(self, pose: NDArray[np.float64], x0: NDArray[np.float64]) -> NDArray[np.float64]:
         """Coordinates (b, n) of the branches of the arm's closed form for a pose (4, 4), the branch of x0 (n,) first.

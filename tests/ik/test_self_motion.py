@@ -38,6 +38,18 @@ def test_all_points_are_solutions_and_every_solution_is_on_a_curve(name: str, se
         assert motions.nearest(result.q).value < 1e-3
 
 
+@pytest.mark.parametrize("bend", [0.0, 1e-4, 1e-2])
+def test_curves_through_a_shoulder_that_is_nearly_straight_are_found(bend: float) -> None:
+    """There its first and third joint turn against each other while the others hardly move."""
+    chain, proved = chain_of("panda"), 0
+    for x in chain.box.sample(np.random.default_rng(5), 6):
+        x[1] = bend
+        motions = mik.self_motions(chain, chain.poses(x)[0, 0])
+        assert motions.nearest(chain.q(x)).value < 1e-3
+        proved += motions.complete is mik.Proof.BOXES
+    assert proved >= 5
+
+
 def test_a_curve_ends_where_a_joint_meets_its_limit_or_where_it_began() -> None:
     chain = chain_of("xarm7")
     _, motions = motions_of("xarm7", 7)

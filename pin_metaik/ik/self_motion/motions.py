@@ -33,12 +33,11 @@ STEP = 0.05  # rad or m between the points of a curve, at most
 POINTS = 20_000  # of a curve at most
 CHUNK, MOST = 4_096, 8_192  # boxes looked at, and kept, at a time; kept in all
 FINER = 8.0, 64.0, 512.0  # by how much smaller boxes that are far from all curves are looked at
+SPREAD = 64  # of the boxes that are kept, from which descents start first
 SEEDS = 512  # solutions to follow curves from, at a time
 LOOKED_UP, DRAWN, SEED = 128, 512, (DEFAULT_SEED, 0)  # configurations to descend from where boxes have no end
 DRAWN_BESIDE = 64  # where they cover all
 SAME = 5e-3  # rad or m: a solution this near to a curve is on it
-STRAIGHT = 1e-2  # triple product of a wrist's axes below which it is bent to neither side ...
-FLAT = 0.2  # ... and in the middle of a box, below which it may be straight somewhere in it
 TURN = 2.0 * np.pi
 
 
@@ -50,8 +49,8 @@ class SelfMotions:
         curves: The curves, the longest first.
         complete: ``Proof.BOXES``: every solution inside the limits is within ``resolution`` of a point of one of the
             curves, so that a missing curve would be that close to these all along. Of a spherical wrist not its three
-            coordinates are compared but only the side to which it is bent, unless it is nearly straight (triple product
-            of its axes below 0.01). ``None``: nothing is proved.
+            coordinates are compared but only the side to which it is bent, but for places where it may be straight:
+            there its coordinates are, too. ``None``: nothing is proved.
         resolution: rad or m; see ``complete``.
         evaluations: Forward kinematics computed, and boxes looked at.
         seconds: Time taken, s.
@@ -201,57 +200,37 @@ class _Search:
         near = 0.0 if all(target.counts[:3]) else np.inf
         boxes = None
         if near == 0.0 or sum(free) < 2:
-            boxes = chain._boxes(0, target.pose.homogeneous, near, 0.0, free, least=0.5 * self._resolution)
+            boxes = chain._boxes(0, target.pose.homogeneous, near, 0.0, free, least=0.5 * self._resolution, shrink=True)
         if boxes is not None:
-            self.covered = self._are_covered(boxes)
+            self.covered = self._is_covered(boxes)
         starts = chain.sample(DRAWN_BESIDE if self.covered else DRAWN, SEED)
         if not self.covered:
             starts = np.concatenate([self._problem.near(LOOKED_UP), starts])
         self._from(starts, 0.5 * self._resolution)
 
-    def _are_covered(self, boxes: Boxes) -> bool:
-        """Find the curves of all boxes; whether there is one near all that are kept.
+    def _is_covered(self, boxes: Boxes) -> bool:
+        """Find the curves through all boxes that are kept; whether there is one near all of them.
 
-        A wrist is bent to one side and then to the other, in boxes that are kept for either. Where it is nearly
-        straight, its first and last joint may turn against each other while no other one moves: there its joints count,
-        and are split, like all others.
+        Descents start from some of them, then from those that are far from all curves; those that still are then are
+        split again, as exclusion is weak where boxes are large.
         """
-        every = self._kept(boxes)
-        if not len(boxes.arm.wrist) or every is None:
-            return self._is_covered(boxes, every, None)
-        covered, straight = True, []
-        for side in (0, 1):
-            part = boxes.bent(side).among(every, boxes.least)
-            kept = self._kept(part)
-            if kept is None:
+        far = self._kept(boxes)
+        for finer in (*FINER, None):
+            if far is None:
                 return False
-            flat = np.abs(self._bends(part, kept[:, : self._problem.chain.n])) < FLAT
-            covered = self._is_covered(part, kept[~flat], side) and covered
-            straight.append(kept[flat])
-        rest = boxes.among(np.concatenate(straight), boxes.least).split()
-        return self._is_covered(rest, self._kept(rest), None) and covered
-
-    def _is_covered(self, boxes: Boxes, kept: Array | None, side: int | None) -> bool:
-        """The same of boxes (k, 2 m) that are kept, with a wrist bent to one side; None is no end of them.
-
-        Descents start from all of them, and those that are far from all curves then are split again, as exclusion is
-        weak where boxes are large.
-        """
-        if kept is None:
-            return False
-        self._from(kept[:, : self._problem.chain.n], boxes.least)
-        far = kept[~self._is_near(boxes, kept, side)]
-        for finer in FINER:
+            far = self._still_far(boxes, far, far[:: 1 + len(far) // SPREAD])
+            far = self._still_far(boxes, far, far)
             if not len(far):
                 return True
-            boxes = boxes.among(far, 0.5 * self._resolution / finer)
-            found = self._kept(boxes)
-            if found is None:
-                return False
-            far = found[~self._is_near(boxes, found, side)]
-            self._from(far[:, : self._problem.chain.n], boxes.least)
-            far = far[~self._is_near(boxes, far, side)]
-        return not len(far)
+            if finer is not None:
+                boxes = boxes.among(far, 0.5 * self._resolution / finer)
+                far = self._kept(boxes)
+        return False
+
+    def _still_far(self, boxes: Boxes, kept: Array, starts: Array) -> Array:
+        """Of boxes (k, 2 m), those far from all curves, after descents from the middles of others (s, 2 m)."""
+        self._from(starts[:, : self._problem.chain.n], boxes.least)
+        return kept[~self._is_near(boxes, kept)]
 
     def _kept(self, boxes: Boxes) -> Array | None:
         """Boxes (k, 2 m) that are kept; None, if the budget ends before, or there is no end of them."""
@@ -265,28 +244,31 @@ class _Search:
             tell(self._watch, Progress(self.spent, self._total))
         return np.concatenate(kept) if kept else np.empty((0, boxes.arm.whole.shape[1]))
 
-    def _is_near(self, boxes: Boxes, kept: Array, side: int | None) -> NDArray[np.bool_]:
+    def _is_near(self, boxes: Boxes, kept: Array) -> NDArray[np.bool_]:
         """(k,) whether all of each box (k, 2 m) is within the resolution of a point of a curve.
 
-        Coordinates of a wrist are left out, but the point must have it bent to the same side, or nearly straight.
+        Where a box is long in the coordinates of a wrist, these are left out, but the point must have it bent to the
+        side that all of the box does.
         """
         from pin_metaik.kinematics.self_motion.near import mark_near
 
-        counts = np.setdiff1d(np.arange(self._problem.chain.n), boxes.arm.wrist)
-        near = np.zeros(len(kept), np.int64)
+        n, wrist = self._problem.chain.n, boxes.arm.wrist
+        near, multi_turn = np.zeros(len(kept), np.int64), self._multi_turn.astype(np.int64)
+        every, others = np.arange(n), np.setdiff1d(np.arange(n), wrist)
+        wide = (kept[:, kept.shape[1] // 2 + wrist] > boxes.least).any(axis=1)
+        side = np.zeros(len(kept))
+        if wide.any():
+            side[wide] = np.sign(self._bends(boxes, kept[wide, :n]))
         for curve in self.curves:
-            x = np.ascontiguousarray(curve.x[self._is_bent(boxes, curve, side)])
-            mark_near(np.ascontiguousarray(kept), x, counts, self._multi_turn.astype(np.int64), self._resolution, near)
+            bent = np.sign(self._bends(boxes, curve.x)) if wide.any() else np.zeros(len(curve.x))
+            for which in np.unique(side):
+                at = np.flatnonzero((side == which) & (near == 0))
+                x = curve.x if which == 0.0 else np.ascontiguousarray(curve.x[bent == which])
+                marks = np.zeros(len(at), np.int64)
+                mark_near(kept[at], x, every if which == 0.0 else others, multi_turn, self._resolution, marks)
+                near[at] = marks
         marked: NDArray[np.bool_] = near == 1
         return marked
-
-    def _is_bent(self, boxes: Boxes, curve: SelfMotionCurve, side: int | None) -> NDArray[np.bool_]:
-        """(k,) whether a wrist is bent to one side, or nearly straight, at each point of a curve."""
-        if side is None:
-            return np.ones(len(curve.x), bool)
-        bent = self._bends(boxes, curve.x)
-        found: NDArray[np.bool_] = bent < STRAIGHT if side == 0 else bent > -STRAIGHT
-        return found
 
     def _bends(self, boxes: Boxes, X: Array) -> Array:
         """Triple product (k,) of a wrist's axes at coordinates X (k, n): 0 where it is straight."""

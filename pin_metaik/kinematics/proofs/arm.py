@@ -100,28 +100,20 @@ class ProofArm:
         return np.concatenate([0.5 * (lower + upper), 0.5 * (upper - lower)])[None]
 
     @property
-    def split(self) -> ProofArm:
-        """The same arm, but the joints of a wrist are split, too, so that what is kept is small in every coordinate."""
-        joints, wiring, knots, tip, lower, upper, reach, wrist = self.arrays
-        return replace(self, arrays=(joints, wiring, knots, tip, lower, upper, reach, 2 * wrist))
+    def shrinking(self) -> ProofArm:
+        """The same arm, but boxes are shrunk around solutions, and tell of the joints of a wrist; see ``BoxArm``."""
+        from pin_metaik.kinematics.proofs.box import BENT, FREE, SPLIT
 
-    @property
-    def unsplit(self) -> Ints:
-        """(3,) coordinates of a wrist, which are never split; (0,) if there is none."""
-        columns, wrist = self.arrays[1][-3:, COLUMN], self.arrays[7][0]
-        return columns if wrist not in (0, 2) else columns[:0]
+        *arrays, wrist = self.arrays
+        own = int((self.arrays[1][-3:, COLUMN] < self.n).sum())
+        how = FREE if not wrist[0] or own == 0 else BENT if own == 3 else SPLIT
+        return replace(self, arrays=(*arrays, np.array([wrist[0], how])))
 
     @property
     def wrist(self) -> Ints:
-        """The same of a wrist that is the chain's own."""
-        columns = self.unsplit
-        return columns if (columns < self.n).all() else columns[:0]
-
-    def bent(self, side: int) -> ProofArm:
-        """The same arm with its wrist bent to one side, 0 or 1; see ``BoxArm``."""
-        from pin_metaik.kinematics.proofs.box import BENT
-
-        return replace(self, arrays=(*self.arrays[:7], np.array([BENT[side]])))
+        """(3,) coordinates of a wrist that is the chain's own, (0,) if it has none."""
+        columns = self.arrays[1][-3:, COLUMN]
+        return columns if self.arrays[7][0] == 1 and (columns < self.n).all() else columns[:0]
 
     @property
     def movers(self) -> int:
@@ -182,7 +174,7 @@ def proof_arm(paths: ChainArrays, limits: Limits, tip: int, free: Free) -> Proof
         lower,
         upper,
         np.array([_reach(path, knots, lower, upper), 0.0 if wrist is None else _miss(path, knots)]),
-        np.array([int(wrist is not None)]),
+        np.array([int(wrist is not None), 0]),
     )
     return ProofArm(arrays, backwards, n)
 

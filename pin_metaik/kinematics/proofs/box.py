@@ -19,7 +19,7 @@ from pin_metaik.kinematics.kernel.forward import forward
 from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE
 from pin_metaik.kinematics.proofs.balls import chord, norm
 
-BENT = 3, 4
+FREE, BENT, SPLIT = 1, 2, 3  # what becomes of a wrist; see ``BoxArm``
 START = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])  # the world, seen from the world
 
 
@@ -35,9 +35,10 @@ class BoxArm(NamedTuple):
         upper: (n,).
         reach: (2,) greatest distance of any point from the tip and from each other, m; and how far turns of the wrist
             may move its point as the tip sees it, because its axes do not quite meet.
-        wrist: (1,) 1 if the last three axes meet, each with a coordinate of its own; then these are never split, or, if
-            it is 2, once all others are short. BENT[0] or BENT[1]: only where it is bent to that side, with a triple
-            product of its axes below or above 0.
+        wrist: (2,) 1 if the last three axes meet, each with a coordinate of its own; then these are split last, if at
+            all. 0, or above if boxes are shrunk around solutions: ``FREE`` if nobody asks for the values of a wrist's
+            joints, ``BENT`` if its two bends are told apart and it is split where it may be straight, and ``SPLIT`` if
+            it always is, once all other joints are short.
     """
 
     joints: Floats

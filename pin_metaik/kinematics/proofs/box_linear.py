@@ -1,4 +1,4 @@
-"""Whether a box is excluded to first order, with the remainder of the series bounded.
+"""What reaching the target says of a box to first order, with the remainder of the series bounded.
 
 The chain is cut after joint s, in a point P of link s. With d the way from the centre, A P and the orientation after
 joint s are reached from the world and from the target; to first order
@@ -15,8 +15,9 @@ What a few sweeps of coordinate descent leave of A d - b is taken for w.
 from __future__ import annotations
 
 import math
+from typing import TypeAlias
 
-from pin_metaik.compiled import Floats, inline, shared
+from pin_metaik.compiled import Floats, shared
 from pin_metaik.kinematics.kernel.closed_form import cross, dot, minus, vector
 from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE
 from pin_metaik.kinematics.proofs.balls import norm
@@ -25,23 +26,17 @@ from pin_metaik.kinematics.proofs.box import BoxArm, Laid, times, write
 SWEEPS, LOOK, SETTLED = 12, 3, 0.02  # sweeps, how often the direction is tried, share of a width that is no move
 
 
-@shared
-def excluded_to_first_order(
-    arm: BoxArm,
-    laid: Laid,
-    width: Floats,
-    near: float,
-    aligned: float,
-    cut: int,
-    place_alone: bool,
-    rows: Floats,
-    columns: Floats,
-    way: Floats,
-) -> bool:
-    """Whether no way within the half widths (n,) meets the equations of a cut after joint ``cut``.
+Equations: TypeAlias = tuple[float, float, float, float, float, float]
 
-    ``place_alone``: at the wrist's point, where only the joints before it and only the place count. ``rows`` (S, 6),
-    ``columns`` (n, 6) and ``way`` (n,) are scratch.
+
+@shared
+def to_first_order(
+    arm: BoxArm, laid: Laid, near: float, aligned: float, cut: int, place_alone: bool, rows: Floats, columns: Floats
+) -> Equations:
+    """The equations of a cut after joint ``cut``: ``columns`` (n, 6) gets A by coordinate, b is returned.
+
+    ``place_alone``: at the wrist's point, where only the joints before it and only the place count. ``rows`` (S, 6) is
+    scratch.
     """
     S = laid.half.shape[0] - 3 if place_alone else laid.half.shape[0]
     at = S if place_alone else cut
@@ -103,11 +98,11 @@ def excluded_to_first_order(
         for k in range(3):
             columns[c, k] += scale * by_place * rows[i, k]
             columns[c, 3 + k] += scale * by_turn * rows[i, 3 + k]
-    return separated(columns, b, width, way)
+    return b
 
 
-@inline
-def separated(columns: Floats, b: tuple[float, float, float, float, float, float], width: Floats, way: Floats) -> bool:
+@shared
+def separated(columns: Floats, b: Equations, width: Floats, way: Floats) -> bool:
     """Whether |A d - b| <= 1 for the place and for the turn has no solution |d| <= width: proved by a direction.
 
     ``columns`` (n, 6) is A by coordinate; ``way`` (n,) gets the last d.

@@ -3,6 +3,9 @@
 A box that a test excludes is done with; another is split in two, depth first, in the coordinate that keeps the tests
 from excluding most. When none is left, no configuration inside the limits reaches the target: that is proved. A box
 whose sides are all short is kept as a place to descend from. There is no randomness in it.
+
+Where all solutions are asked for, boxes are also shrunk around what may be in them, and of a wrist, whose joints are
+split last if at all, what is kept has the ranges: one box for each of the two ways to bend it.
 """
 
 from __future__ import annotations
@@ -11,12 +14,15 @@ import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit
 from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES
-from pin_metaik.kinematics.proofs.box import BoxArm, laid_for, lay
+from pin_metaik.kinematics.proofs.box import BENT, SPLIT, BoxArm, laid_for, lay
 from pin_metaik.kinematics.proofs.box_balls import excluded_by_balls
-from pin_metaik.kinematics.proofs.box_linear import excluded_to_first_order
-from pin_metaik.kinematics.proofs.box_wrist import excluded_by_wrist
+from pin_metaik.kinematics.proofs.box_contract import bend, contracted, first_joint_turned, joint_with_copies
+from pin_metaik.kinematics.proofs.box_linear import separated, to_first_order
+from pin_metaik.kinematics.proofs.box_wrist import wrist_turns
 
 FIRST_ORDER = 3.0  # rad, sum of the half widths up to which the series is worth looking at
+SHRUNK = 0.75  # of the sum of its half widths, below which a box that was made smaller is looked at anew
+FINER = 0.03  # of the least half width: that of the other joints before those of a wrist that may be straight are split
 
 ARM = "f8[:,::1], i8[:,::1], f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], i8[::1]"
 
@@ -70,7 +76,7 @@ def cover(
         count: How many they are.
         least: Half width (rad or m) below which a box is kept instead of split.
         boxes: How many to look at, at most.
-        leaves: (l, 2 n) gets centres and half widths of the boxes that are kept. When it is full the search stops.
+        leaves: (l + 1, 2 n) gets centres and half widths of the boxes that are kept. The search stops after l.
 
     Returns:
         With none waiting and no leaf it is proved that nothing in the boxes reaches the target; with leaves, that
@@ -85,9 +91,10 @@ def cover(
     laid = laid_for(S)
     for k in range(last):
         splits[wiring[k, COLUMN]] = 1
+    shrinks, bends, system, turned = wrist[1] > 0, wrist[1] == BENT, np.empty((9, n + 6)), np.empty((2, 9))
     looked = kept = 0
     while count > 0:
-        if looked >= boxes or kept == leaves.shape[0] or count + 1 > waiting.shape[0]:
+        if looked >= boxes or kept >= leaves.shape[0] - 1 or count + 1 > waiting.shape[0]:
             break
         looked += 1
         count -= 1
@@ -97,35 +104,76 @@ def cover(
         lay(arm, target, centre, width, laid)
         if excluded_by_balls(arm, laid, near, aligned, weights):
             continue
-        if has_wrist and excluded_by_wrist(arm, laid, centre, width, aligned, start):
-            continue
-        total = 0.0
-        for k in range(last):
-            total += laid.half[k] if wiring[k, ROTATES] == 1 else 0.0
-        if total < FIRST_ORDER:
-            cut = last - 1 if has_wrist else middle_joint(arm, laid.half, last, total)
-            if excluded_to_first_order(arm, laid, width, near, aligned, cut, has_wrist, rows, columns, way):
+        ways, straight = 1, False
+        if has_wrist:
+            ways, straight = wrist_turns(arm, laid, centre, width, aligned, 2 if bends else 1, turned)
+            if ways == 0:
                 continue
+            for k in range(3):
+                start[wiring[last + k, COLUMN]] = turned[0, k]
+        straight = wrist[1] == SPLIT or (bends and straight)
+        total = whole = 0.0
+        for k in range(S):
+            half = laid.half[k] if wiring[k, ROTATES] == 1 else 0.0
+            whole += half
+            total += half if k < last else 0.0
+        alone = has_wrist and not (straight and whole < FIRST_ORDER)
+        if total < FIRST_ORDER:
+            cut = last - 1 if alone else middle_joint(arm, laid.half, S, whole)
+            b = to_first_order(arm, laid, near, aligned, cut, alone, rows, columns)
+            if separated(columns, b, width, way):
+                continue
+            left = contracted(columns, b, centre, width, system) if shrinks else 1.0
+            if left == 0.0:
+                continue
+            if left < SHRUNK:
+                put(centre, width, waiting[count])
+                count += 1
+                continue
+        if shrinks and has_wrist and wiring[0, ROTATES] == 1:
+            if not first_joint_turned(arm, laid, near, waiting[count], centre, width, system[0]):
+                continue
+            weights[wiring[0, COLUMN]] = 0.0
         at = -1
         for c in range(n):
-            wide = splits[c] == 1 and width[c] > least
-            if wide and (at < 0 or weights[c] > weights[at]):
+            if splits[c] == 1 and width[c] > least and (at < 0 or weights[c] > weights[at]):
                 at = c
-        if at < 0 and wrist[0] == 2:
-            for s in range(last, S):
-                c = wiring[s, COLUMN]
-                if width[c] > least and (at < 0 or width[c] > width[at]):
-                    at = c
-        if at < 0:
-            for c in range(n):
-                leaves[kept, c], leaves[kept, n + c] = centre[c] if wrist[0] == 2 else start[c], width[c]
+        if at < 0 and straight:
+            at = widest(width, splits, 1, FINER * least)
+            at = widest(width, splits, 0, least) if at < 0 else at
+        elif at < 0 and bends:
+            at = joint_with_copies(arm, turned, ways)
+        if at >= 0:
+            for side in range(2):
+                put(centre, width, waiting[count])
+                half = 0.5 * width[at]
+                waiting[count, n + at] = half
+                waiting[count, at] += half if side == 1 else -half
+                count += 1
+        elif bends and not straight:
+            for turn in range(ways):
+                bend(arm, turned[turn], centre, width)
+                put(centre, width, leaves[kept])
+                kept += 1
+        else:
+            put(centre if shrinks else start, width, leaves[kept])
             kept += 1
-            continue
-        for side in range(2):
-            for c in range(n):
-                waiting[count, c], waiting[count, n + c] = centre[c], width[c]
-            half = 0.5 * width[at]
-            waiting[count, n + at] = half
-            waiting[count, at] += half if side == 1 else -half
-            count += 1
     return looked, kept, count
+
+
+@inline
+def put(centre: Floats, width: Floats, box: Floats) -> None:
+    """Write a centre (n,) and half widths (n,) as a box (2 n,)."""
+    n = centre.shape[0]
+    for c in range(n):
+        box[c], box[n + c] = centre[c], width[c]
+
+
+@inline
+def widest(width: Floats, splits: Ints, kind: int, least: float) -> int:
+    """The coordinate with the greatest half width of those of a kind that are above ``least``; -1: there is none."""
+    at = -1
+    for c in range(width.shape[0]):
+        if splits[c] == kind and width[c] > least and (at < 0 or width[c] > width[at]):
+            at = c
+    return at

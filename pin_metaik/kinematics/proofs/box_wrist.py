@@ -20,14 +20,17 @@ from pin_metaik.kinematics.proofs.balls import (
     reverse,
     turned_ball,
 )
-from pin_metaik.kinematics.proofs.box import BENT, BoxArm, Laid, times
+from pin_metaik.kinematics.proofs.box import BoxArm, Laid, times
 
 
 @shared
-def excluded_by_wrist(arm: BoxArm, laid: Laid, centre: Floats, width: Floats, aligned: float, start: Floats) -> bool:
-    """Whether no turns of the wrist inside the box come within ``aligned`` (rad) of the target's orientation.
+def wrist_turns(
+    arm: BoxArm, laid: Laid, centre: Floats, width: Floats, aligned: float, most: int, turned: Floats
+) -> tuple[int, bool]:
+    """How the wrist inside the box comes within ``aligned`` (rad) of the target's orientation.
 
-    If some may, ``start`` (n,) gets the wrist's coordinates there.
+    Returns in how many ways: it is bent to one side or to the other; and whether it may be straight. ``turned`` (2, 9)
+    gets, for up to ``most`` ways, a value of each of its coordinates, the least that they may have, and the greatest.
     """
     S = laid.half.shape[0]
     w = S - 3
@@ -45,36 +48,47 @@ def excluded_by_wrist(arm: BoxArm, laid: Laid, centre: Floats, width: Floats, al
     fixed = dot(k1, k2) * dot(k2, k3)
     a, b, rest = dot(k1, k3) - fixed, dot(k1, cross(k2, k3)), dot(k1, goal) - fixed
     size, spread = math.sqrt(a * a + b * b), min(off, lever(k1, goal) * off + 0.5 * off * off)
-    if size < ROUNDING:
-        return False
+    if size < ROUNDING:  # it can turn axis 3 nowhere else: nothing is known
+        for k in range(3):
+            c = arm.wiring[w + k, COLUMN]
+            turned[0, k], turned[0, 3 + k], turned[0, 6 + k] = centre[c], centre[c] - width[c], centre[c] + width[c]
+        return 1, True
     if abs(rest) - spread > size:
-        return True
+        return 0, False
     near, far = math.acos(min((rest + spread) / size, 1.0)), math.acos(max((rest - spread) / size, -1.0))
     middle, half, radius = math.atan2(b, a), 0.5 * (near + far), 0.5 * (far - near)
+    ways, straight = 0, abs(rest) + spread >= size
     for way in range(2):
-        if arm.wrist[0] == BENT[1 - way]:
-            continue
         second = middle + (half if way == 0 else -half)
         t2: Arc = (math.cos(second), math.sin(second)), radius
         t1 = arc_from_to(k1, turned_ball(k2, t2, (k3, 0.0)), (goal, off))
         back = turned_ball(k2, reverse(t2), turned_ball(k1, reverse(t1), (goal_side, off_side)))
         t3 = arc_from_to(k3, (side, 0.0), back)
-        fits = turns(arm, centre, width, w, t1, start) and turns(arm, centre, width, w + 1, t2, start)
-        if fits and turns(arm, centre, width, w + 2, t3, start):
-            return False
-    return True
+        here = turned[ways]
+        fits = turns(arm, centre, width, w, t1, here[::3]) and turns(arm, centre, width, w + 1, t2, here[1::3])
+        if fits and turns(arm, centre, width, w + 2, t3, here[2::3]):
+            ways += 1
+            if ways == most:
+                return ways, straight
+    return ways, straight
 
 
 @inline
-def turns(arm: BoxArm, centre: Floats, width: Floats, s: int, arc: Arc, start: Floats) -> bool:
-    """Whether joint s may turn by an arc from the centre within the box; its coordinate there goes into ``start``."""
+def turns(arm: BoxArm, centre: Floats, width: Floats, s: int, arc: Arc, turned: Floats) -> bool:
+    """Whether joint s may turn by an arc from the centre within the box; ``turned`` (3,) gets where to; see above."""
     c, scale, shift = arm.wiring[s, COLUMN], arm.joints[s, SCALE], arm.joints[s, SHIFT]
     middle, half = scale * centre[c] + shift, abs(scale) * width[c]
     lower, upper = middle - half, middle + half
-    at = middle + angle(arc[0])
-    if beyond(at, arc[1], lower, upper) > 0.0:
+    at, radius = middle + angle(arc[0]), arc[1]
+    if beyond(at, radius, lower, upper) > 0.0:
         return False
-    turn = 2.0 * math.pi
-    at += turn * math.ceil((lower - ROUNDING - arc[1] - at) / turn) if arc[1] < math.pi else 0.0
-    start[c] = (min(max(at, lower), upper) - shift) / scale
+    least, most, turn = lower, upper, 2.0 * math.pi
+    if radius < math.pi:
+        at += turn * math.ceil((lower - ROUNDING - radius - at) / turn)
+        last = at + turn * math.floor((upper + ROUNDING + radius - at) / turn)
+        least, most = max(lower, at - radius), min(upper, last + radius)
+    turned[0] = (min(max(at, lower), upper) - shift) / scale
+    turned[1], turned[2] = (least - shift) / scale, (most - shift) / scale
+    if scale < 0.0:
+        turned[1], turned[2] = turned[2], turned[1]
     return True

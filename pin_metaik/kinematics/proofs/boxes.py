@@ -60,21 +60,6 @@ class Boxes:
         part.looked, part.clean, part._least = 0, True, least
         part._waiting = np.empty((len(boxes) + DEPTH, boxes.shape[1]))
         part._waiting[: len(boxes)], part._count = boxes, len(boxes)
-        unsplit, m = self.arm.unsplit, boxes.shape[1] // 2
-        both = np.append(unsplit, m + unsplit)  # of these a box that was kept has where they may be, not the middle
-        part._waiting[: len(boxes), both] = self.arm.whole[0, both]
-        return part
-
-    def split(self) -> Boxes:
-        """The same with the joints of a wrist split, too; see ``ProofArm.split``."""
-        part = copy(self)
-        part.arm, part._waiting = self.arm.split, self._waiting.copy()
-        return part
-
-    def bent(self, side: int) -> Boxes:
-        """The same with the wrist bent to one side; see ``ProofArm.bent``."""
-        part = copy(self)
-        part.arm, part._waiting = self.arm.bent(side), self._waiting.copy()
         return part
 
     @property
@@ -93,13 +78,15 @@ class Boxes:
         return self.done and self.clean
 
     def look(self, boxes: int, leaves: int = 1) -> Floats:
-        """Look at so many boxes at most; returns the centres and half widths of those kept (k, 2 m), k <= ``leaves``.
+        """Look at so many boxes at most; returns the centres and half widths of those kept (k, 2 m).
+
+        It ends with ``leaves`` of them, or one more.
 
         The last coordinates, beyond the chain's own, are those of the free joints at the tip.
         """
         from pin_metaik.kinematics.proofs.box_search import cover
 
-        kept = np.empty((leaves, self._waiting.shape[1]))
+        kept = np.empty((leaves + 1, self._waiting.shape[1]))
         looked, count, self._count = cover(
             *self.arm.arrays, *self._target, self._waiting, self._count, self._least, boxes, kept
         )

@@ -6,7 +6,6 @@ import pytest
 
 import pin_metaik as mik
 from pin_metaik.kinematics.proofs.arm import WHOLE, Path, ProofArm, proof_arm
-from pin_metaik.kinematics.self_motion.near import bends
 
 
 def chain_of(robot: str) -> mik.Chain:
@@ -110,19 +109,29 @@ def test_slides_without_limits_cannot_be_covered() -> None:
     assert proof_arm(chain.paths, chain.limits, 0, WHOLE) is None
 
 
-def test_a_wrist_bent_to_one_side_keeps_the_boxes_of_solutions_bent_so() -> None:
-    chain = chain_of("panda")
-    rng = np.random.default_rng(4)
-    seen = set()
-    for x in chain.box.sample(rng, 60):
-        boxes = chain._boxes(0, chain.poses(x)[0, 0], 0.0, 0.0, least=1e-3)
-        joints, wiring, _, tip, *_ = boxes.arm.arrays
-        bent = np.empty(1)
-        bends(joints, wiring, tip, x[None], bent)
-        side = int(bent[0] > 0.0)
-        box = np.concatenate([x, np.full(chain.n, 1e-4)])
-        kept = [len(boxes.bent(way).within(box, 1e-3).look(50, 50)) for way in (0, 1)]
-        assert kept[side] == 1
-        seen.add((side, kept[1 - side]))
-    assert {side for side, _ in seen} == {0, 1}
-    assert 0 in {other for _, other in seen}  # bent the other way it would be beyond its limits
+@pytest.mark.parametrize("robot", ["panda", "xarm7"])
+def test_boxes_that_are_shrunk_hold_the_solution_with_its_wrist(robot: str) -> None:
+    chain = chain_of(robot)
+    n = chain.n
+    for x in chain.box.sample(np.random.default_rng(4), 10):
+        boxes = chain._boxes(0, chain.poses(x)[0, 0], 0.0, 0.0, least=0.05, shrink=True)
+        kept = boxes.look(200_000, 20_000)
+        assert boxes.done
+        off = kept[:, :n] - x
+        off = np.where(chain.limits.rotates, off - 2.0 * np.pi * np.round(off / (2.0 * np.pi)), off)
+        assert (np.abs(off) <= kept[:, n:] + 1e-9).all(axis=1).any()
+        others = np.setdiff1d(np.arange(n), boxes.arm.wrist)
+        assert len(others) == n - 3 and (kept[:, n + others] <= 0.05).all()
+
+
+def test_a_box_shrinks_to_the_solution_in_it_and_what_is_empty_to_nothing() -> None:
+    chain = chain_of("talos_arm")
+    x = chain.box.sample(np.random.default_rng(3), 1)[0]
+    boxes = chain._boxes(0, chain.poses(x)[0, 0], 0.0, 0.0, least=1e-6, shrink=True)
+    around, beside = (np.concatenate([x + off, np.full(6, 0.05)]) for off in (0.02, 0.08))
+    part = boxes.within(around, 1e-6)
+    kept = part.look(40, 10)
+    assert part.done and len(kept) == 1
+    np.testing.assert_allclose(kept[0, :6], x, atol=1e-6)
+    empty = boxes.within(beside, 1e-6)
+    assert not len(empty.look(40, 10)) and empty.excluded

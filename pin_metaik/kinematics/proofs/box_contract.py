@@ -1,0 +1,156 @@
+"""A box made smaller around the solutions in it, to first order.
+
+The equations |A d - b| <= 1 of ``box_linear`` are solved for as many coordinates as they have rows, those that they say
+most of: a row u of the inverse turns them into d_c = u . b - sum_j (u . A_j) d_j, for the other coordinates j, give or
+take |u_p| + |u_o|. That holds for any u, so that the inverse need not be exact. A box around an isolated solution
+shrinks quadratically, one around a curve to a piece of a tube along it.
+"""
+
+from __future__ import annotations
+
+import math
+
+from pin_metaik.compiled import Floats, inline, shared
+from pin_metaik.kinematics.kernel.closed_form import minus, vector
+from pin_metaik.kinematics.kernel.layout import COLUMN, SCALE
+from pin_metaik.kinematics.proofs.balls import arc_from_to
+from pin_metaik.kinematics.proofs.box import BoxArm, Laid
+from pin_metaik.kinematics.proofs.box_linear import Equations
+from pin_metaik.kinematics.proofs.box_wrist import turns
+
+LEAST = 1e-3  # of tolerance and remainder: what a whole coordinate moves if the equations are to be solved for it
+PAD = 1e-12  # rad or m: rounding
+
+
+@shared
+def contracted(columns: Floats, b: Equations, centre: Floats, width: Floats, system: Floats) -> float:
+    """Shrink a box to what the equations leave of it, in place.
+
+    Args:
+        columns: (n, 6) A by coordinate.
+        b: The right side.
+        centre: (n,) of the box.
+        width: (n,) its half widths.
+        system: (9, n + 6) scratch.
+
+    Returns:
+        What is left of the sum of the half widths that they are about, as a share; 0 if nothing can be in the box.
+    """
+    n = width.shape[0]
+    low, high, solved = system[6], system[7], system[8]
+    for r in range(6):
+        for c in range(n):
+            system[r, c] = columns[c, r]
+        for k in range(6):
+            system[r, n + k] = 1.0 if r == k else 0.0
+    for c in range(n):
+        low[c], high[c] = -width[c], width[c]
+    rank = eliminated(system, width, solved)
+    for r in range(rank):
+        c = int(solved[r])
+        slope = middle = 0.0
+        for k in range(6):
+            slope += system[r, n + k] * columns[c, k]
+            middle += system[r, n + k] * b[k]
+        if slope < 0.5:  # it is 1 but for rounding
+            continue
+        least = most = middle
+        for j in range(n):
+            if j != c:
+                share = 0.0
+                for k in range(6):
+                    share += system[r, n + k] * columns[j, k]
+                least -= max(share * low[j], share * high[j])
+                most -= min(share * low[j], share * high[j])
+        place = turn = 0.0
+        for k in range(3):
+            place += system[r, n + k] * system[r, n + k]
+            turn += system[r, n + 3 + k] * system[r, n + 3 + k]
+        spread = math.sqrt(place) + math.sqrt(turn)
+        low[c], high[c] = max(low[c], (least - spread) / slope - PAD), min(high[c], (most + spread) / slope + PAD)
+        if low[c] > high[c]:
+            return 0.0
+    before = after = 0.0
+    for c in range(n):
+        left = 0.5 * (high[c] - low[c])
+        for k in range(6):
+            if columns[c, k] != 0.0:
+                before, after = before + width[c], after + left
+                break
+        centre[c], width[c] = centre[c] + 0.5 * (low[c] + high[c]), left
+    return max(after / before, PAD) if before > 0.0 else 1.0
+
+
+@shared
+def eliminated(system: Floats, width: Floats, solved: Floats) -> int:
+    """Solve [A | I] (6, n + 6) for coordinates that move much within their half widths (n,); for how many.
+
+    The row that is solved for a coordinate, whose number goes into ``solved`` (6,), is divided by its pivot.
+    """
+    n = width.shape[0]
+    for r in range(6):
+        at, column, largest = r, -1, LEAST
+        for i in range(r, 6):
+            for c in range(n):
+                size = abs(system[i, c]) * width[c]
+                if size > largest:
+                    at, column, largest = i, c, size
+        if column < 0:
+            return r
+        solved[r] = column
+        for j in range(n + 6):
+            system[r, j], system[at, j] = system[at, j], system[r, j]
+        inverse = 1.0 / system[r, column]
+        for j in range(n + 6):
+            system[r, j] *= inverse
+        for i in range(6):
+            factor = system[i, column]
+            if i != r and factor != 0.0:
+                for j in range(n + 6):
+                    system[i, j] -= factor * system[r, j]
+    return 6
+
+
+@shared
+def first_joint_turned(
+    arm: BoxArm, laid: Laid, near: float, box: Floats, centre: Floats, width: Floats, turned: Floats
+) -> bool:
+    """Shrink a box, in place, to turns of its first joint that bring a wrist's point to the target; False: none does.
+
+    ``box`` (2 n,) is what it was when the chain was laid, ``centre`` and ``width`` (n,) what was left of it since;
+    ``turned`` is scratch.
+    """
+    n, w, c = width.shape[0], laid.half.shape[0] - 3, arm.wiring[0, COLUMN]
+    z, o, room = vector(laid.axes[0]), vector(laid.points[0]), 0.0
+    for j in range(1, w):
+        room += laid.moves[j] * laid.distances[w, j]
+    here, there = minus(vector(laid.points[w]), o), minus(vector(laid.target_points[w]), o)
+    arc = arc_from_to(z, (here, room), (there, near + arm.reach[1]))
+    if not turns(arm, box[:n], box[n:], 0, arc, turned):
+        return False
+    lower, upper = max(turned[1], centre[c] - width[c]), min(turned[2], centre[c] + width[c])
+    if lower > upper + PAD:
+        return False
+    centre[c], width[c] = 0.5 * (lower + upper), max(0.5 * (upper - lower), 0.0) + PAD
+    return True
+
+
+@inline
+def joint_with_copies(arm: BoxArm, turned: Floats, ways: int) -> int:
+    """The coordinate of a wrist's second joint if its range holds a bend more than once, by whole turns; else -1.
+
+    ``turned`` (2, 9) tells the ranges of a wrist that is not straight: less than half a turn for each bend.
+    """
+    s = arm.wiring.shape[0] - 2
+    for way in range(ways):
+        if abs(arm.joints[s, SCALE]) * (turned[way, 7] - turned[way, 4]) > math.pi:
+            return arm.wiring[s, COLUMN]
+    return -1
+
+
+@inline
+def bend(arm: BoxArm, turned: Floats, centre: Floats, width: Floats) -> None:
+    """Write the ranges of a wrist's joints, of which ``turned`` (9,) tells, into a box."""
+    for k in range(3):
+        c = arm.wiring[arm.wiring.shape[0] - 3 + k, COLUMN]
+        centre[c], width[c] = 0.5 * (turned[3 + k] + turned[6 + k]), 0.5 * (turned[6 + k] - turned[3 + k])
