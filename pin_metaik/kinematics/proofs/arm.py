@@ -104,10 +104,10 @@ class ProofArm:
         """The same arm, but boxes are shrunk around solutions, and tell of the joints of a wrist; see ``BoxArm``."""
         from pin_metaik.kinematics.proofs.box import BENT, FREE, SPLIT
 
-        *arrays, wrist = self.arrays
+        has_wrist = self.arrays[7][0]
         own = int((self.arrays[1][-3:, COLUMN] < self.n).sum())
-        how = FREE if not wrist[0] or own == 0 else BENT if own == 3 else SPLIT
-        return replace(self, arrays=(*arrays, np.array([wrist[0], how])))
+        how = FREE if not has_wrist or own == 0 else BENT if own == 3 else SPLIT
+        return replace(self, arrays=(*self.arrays[:7], np.array([has_wrist, how])))
 
     @property
     def wrist(self) -> Ints:

@@ -144,7 +144,7 @@ def joint_with_copies(arm: BoxArm, turned: Floats, ways: int) -> int:
     s = arm.wiring.shape[0] - 2
     for way in range(ways):
         if abs(arm.joints[s, SCALE]) * (turned[way, 7] - turned[way, 4]) > math.pi:
-            return arm.wiring[s, COLUMN]
+            return int(arm.wiring[s, COLUMN])
     return -1
 
 
