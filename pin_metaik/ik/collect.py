@@ -126,8 +126,11 @@ class Collection:
             if not self._by_curves() and self._certify:
                 known = self.known
                 self._by_cover()
-                if self.known > known and self.complete is None:
-                    self._by_curves()
+                if self.known > known:
+                    if self.complete is None:
+                        self._by_curves()
+                    else:
+                        self._told_apart()
 
     def _by_closed_form(self, whole: Array) -> bool:
         """Descend from the branches of the arm's closed form; whether that is all one can do.
@@ -230,8 +233,7 @@ class Collection:
         Descents go on until those that come to no known curve come to nothing new. It is not proved that these are all.
         """
         exact, state = self.problem.exact, self.state
-        every, vain = Continua(exact, self._apart), 0
-        every.add(self.solutions)
+        every, vain = self._told_apart(), 0
         if not every.curves:
             return False
         for index in count():
@@ -245,10 +247,20 @@ class Collection:
             )
             state.spent += spent
             vain = 0 if every.add(found[:known]) else vain + len(starts)
-        kept = every.nearest(self._x0)[: len(self._found)]
-        self.known = len(kept)
-        self._found[: self.known] = kept
+        self._keep(every.nearest(self._x0))
         return True
+
+    def _told_apart(self) -> Continua:
+        """The solutions, without those to which a motion within the tolerances leads from another one."""
+        every = Continua(self.problem, self._apart)
+        every.add(self.solutions.copy())
+        self._keep(every.nearest(self._x0))
+        return every
+
+    def _keep(self, X: Array) -> None:
+        """Let solutions X (k, n) be those that are known, as many as there is room for."""
+        self.known = min(len(X), len(self._found))
+        self._found[: self.known] = X[: self.known]
 
     def _by_cover(self) -> None:
         """Cover all configurations with boxes, and look for a solution in each that is kept."""

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import pin_metaik as mik
-from pin_metaik.ik.singular import curve_through
+from pin_metaik.ik.singular import NullMotions
 from tests.robots_under_test import chain_of
 
 STRAIGHT = {  # by the label that is 0 there
@@ -27,10 +27,25 @@ def test_a_straight_wrist_is_told_as_a_curve_and_not_as_many_solutions(name: str
             assert (f"{zero} 0" in label) == (dimension == 1)
 
 
+@pytest.mark.parametrize("off", [1e-7, 1e-6, 1e-5, 1e-4])
+@pytest.mark.parametrize("name", STRAIGHT)
+def test_a_wrist_within_the_tolerances_of_straight_does_not_give_copies(name: str, off: float) -> None:
+    chain, x = chain_of(name), np.array(STRAIGHT[name][0])
+    x[4] += off
+    every = mik.solve_ik_all(chain, chain.poses(x)[0, 0], chain.q(x))
+    assert len(every) <= (12 if off == 1e-5 else 8)  # there the motions end within the tolerances
+    assert chain.limits.separation(every.x, x).max(axis=1).min() < 2e-2
+    nearest = int(chain.limits.separation(every.x, x).max(axis=1).argmin())
+    assert every.dimensions[nearest] == (1 if off < 2e-6 else 0) or off == 1e-5  # where it depends on the arm
+    for i in range(len(every)):
+        ways = chain.limits.separation(np.delete(every.x, i, axis=0), every.x[i]).max(axis=1)
+        assert (ways > 5e-3).all()
+
+
 def test_the_curve_of_a_straight_wrist_turns_its_outer_joints_against_each_other() -> None:
     chain, (x, _) = chain_of("puma560"), STRAIGHT["puma560"]
     problem = mik.IKProblem.of(chain, chain.poses(np.array(x))[0, 0]).exact
-    curve = curve_through(problem, np.array(x))
+    curve = NullMotions.of(problem).curve(np.array(x))
     assert curve is not None and len(curve) > 20
     assert np.ptp(curve[:, 3] + curve[:, 5]) < 1e-6 and np.ptp(curve[:, [0, 1, 2, 4]], axis=0).max() < 1e-6
     assert all(problem.accepts(q) for q in chain.q(curve))
@@ -43,7 +58,7 @@ def test_what_descents_find_in_a_singularity_is_on_one_of_the_curves() -> None:
     pose = chain.poses(np.array(x))[0, 0]
     every = mik.solve_ik_all(chain, pose)
     problem = every.problem.exact
-    curves = [curve_through(problem, one) for one, d in zip(every.x, every.dimensions, strict=True) if d]
+    curves = [NullMotions.of(problem).curve(one) for one, d in zip(every.x, every.dimensions, strict=True) if d]
     known = np.concatenate([curve for curve in curves if curve is not None] + [every.x])
     for start in chain.box.sample(np.random.default_rng(0), 60):
         found = mik.solve_ik(

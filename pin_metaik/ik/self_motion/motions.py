@@ -318,8 +318,10 @@ class _Search:
             tangents = np.concatenate([-last[1][:0:-1], first[1]])
             ends = last[2], first[2]
         t = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
-        if len(points) < 2 or t[-1] < SAME:
+        if t[-1] < SAME:
             return None
+        distinct = np.append(True, np.diff(t) > 0.0)  # a curve that begins at a limit may have its end twice
+        points, tangents, t = points[distinct], tangents[distinct], t[distinct]
         return SelfMotionCurve(self._problem, self._base, points, t, ends, tangents)
 
     def _trace(self, x: Array, way: float) -> tuple[Array, Array, CurveEnd] | None:
