@@ -2,9 +2,9 @@
 
 In a singularity the Jacobian loses rank, and to first order some joints move freely. Whether they do is seen by moving
 them: a step along the null space is put back onto the target across it, by Gauss and Newton's method in the space of
-the singular values that are left. Where that meets the target, solutions are not separate; where it does not, as with an
-elbow that is stretched, two solutions have become one. What is so near to a singularity that joints may move within half
-the tolerance counts as singular: descents find points all along the way.
+the singular values that are left. Where that meets the target, solutions are not separate; where it does not, as with
+an elbow that is stretched, two solutions have become one. What is so near to a singularity that joints may move within
+half the tolerance counts as singular: descents find points all along the way.
 """
 
 from __future__ import annotations
@@ -185,7 +185,7 @@ class Continua:
     def _is_new(self, x: Array) -> bool:
         from pin_metaik.kinematics.self_motion.near import is_on_curve
 
-        limits, multi_turn = self._problem.limits, self._problem.limits.multi_turn.astype(np.int64)
+        multi_turn = self._problem.limits.multi_turn.astype(np.int64)
         if any(self._are_one(x, other) for other in self.separate):
             return False
         met = np.linalg.norm(self._motions.problem.linearize(x)[0]) < EXACT
