@@ -106,6 +106,24 @@ def test_the_best_point_is_better_than_any_that_is_sampled() -> None:
     assert motions.best("torque").value <= min(map(torque, every)) + 1e-4
 
 
+def test_the_nearest_point_is_found_where_limits_exclude_copies_by_whole_turns() -> None:
+    """Limits of 2 pi either way: along a curve an angle jumps from one copy to another, and with it the distance."""
+    chain, rng, jumps = chain_of("xarm7"), np.random.default_rng(8), 0
+    for x in chain.box.sample(rng, 6):
+        q0 = chain.q(chain.box.sample(rng, 1)[0])
+        motions = mik.self_motions(chain, chain.poses(x)[0, 0], q0)
+        for curve in motions:
+            every = chain.x(curve.sample(0.002))
+            jumps += int((np.abs(np.diff(every, axis=0)) > 6.0).any(axis=1).sum())
+            away = np.linalg.norm(every - chain.x(q0), axis=1)
+            assert curve.nearest(q0).value <= away.min() + 1e-4
+            crowded = np.abs(2 * every - chain.limits.lower - chain.limits.upper) / np.ptp(
+                [chain.limits.lower, chain.limits.upper], axis=0
+            )
+            assert curve.best("limits").value <= crowded.max(axis=1).min() + 1e-4
+    assert jumps > 10
+
+
 def test_select_takes_the_best_of_all_solutions_of_a_redundant_arm() -> None:
     chain = chain_of("panda")
     rng = np.random.default_rng(3)

@@ -22,10 +22,8 @@ from pin_metaik.optimize.settings import positive
 Values: TypeAlias = Callable[[Array], Array]  # of coordinates (k, n)
 
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
-NEAR, SHARP = (
-    1e-4,
-    1e-8,
-)  # how far a least value may be off before it is sharpened; width of its interval then, rad or m
+NEAR, SHARP = 1e-4, 1e-8  # how far off a least value may be before it is sharpened; then its interval, rad or m
+CUT = 1e-10  # rad or m of t: width of a place where an angle jumps by a whole turn
 BISECTIONS = 20  # of the place where a curve runs into an obstacle
 
 
@@ -133,8 +131,8 @@ class SelfMotionCurve:
     def nearest(self, q: ArrayLike, weights: Mapping[str, float] | None = None) -> CurvePoint:
         """The point nearest to a configuration (nq,), rad and m weighted alike; angles the shorter way round.
 
-        It is the nearest of the whole curve to within 1e-4, because a distance changes by no more than the joints move.
-        Where limits exclude copies by whole turns it is found as in ``best``, without that guarantee.
+        It is the nearest of the whole curve to within 1e-4, because a distance changes by no more than the joints move,
+        but for places where an angle comes to another copy by whole turns: there the curve is cut.
 
         Args:
             q: The configuration.
@@ -156,9 +154,9 @@ class SelfMotionCurve:
 
         Args:
             criterion: As for ``IKSolver.select``: a name, ``Weighted``, or a function of a configuration (nq,). For
-                ``"nearest"`` (to ``q0``) and ``"limits"`` the result is the best of the whole curve to within 1e-4, if
-                no joint has finite limits a whole turn or more apart. Any other criterion is evaluated at every point
-                of ``x``, and minimised around each point that is better than its two neighbours.
+                ``"nearest"`` (to ``q0``) and ``"limits"`` the result is the best of the whole curve to within 1e-4. Any
+                other criterion is evaluated at every point of ``x``, and minimised around each point that is better
+                than its two neighbours.
 
         Raises:
             UnknownName: No criterion of that name.
@@ -219,7 +217,7 @@ class SelfMotionCurve:
         else:
             name, weights = criterion if isinstance(criterion, str) else "", np.ones(len(limits.lower))
         spans = limits.upper - limits.lower
-        if (limits.multi_turn & ~limits.periodic).any() or not np.isfinite(spans).any():
+        if not np.isfinite(spans).any():
             return None
         rates = {"nearest": weights, "limits": 2.0 * weights / spans}
         return (float(rates[name].max()) or None) if name in rates else None
@@ -243,6 +241,48 @@ class SelfMotionCurve:
         put_back(problem.chain.bare, problem.records, problem.kernel_rows, X, across)
         return X
 
+    @cached_property
+    def _pieces(self) -> list[Array]:
+        """Places t (k,), in order, on each piece of the curve where no angle jumps to another copy by whole turns."""
+        limits = self.problem.limits
+        if not (limits.multi_turn & ~limits.periodic).any():
+            return [self.t]
+        a, b = self._tangents[:-1], self._tangents[1:]
+        turning = (a * b < 0.0) & limits.multi_turn  # where a coordinate turns back, it may look beyond a limit between
+        row, c = np.nonzero(turning)
+        vertices = self.t[row] + (self.t[row + 1] - self.t[row]) * a[row, c] / (a[row, c] - b[row, c])
+        t = np.unique(np.append(self.t, vertices))
+        turns = self._turns(t)
+        pieces: list[Array] = []
+        inside = [float(t[0])]
+        for i in range(1, len(t)):
+            at, to, known = float(t[i - 1]), float(t[i]), turns[i - 1]
+            while (turns[i] != known).any():
+                end, at, known = self._jump(at, to, known)
+                pieces.append(np.array([*inside, end] if end > inside[-1] else inside))
+                inside = [at]
+            if to > inside[-1]:
+                inside.append(to)
+        return [*pieces, np.array(inside)]
+
+    def _turns(self, t: Array) -> Array:
+        """By how many whole turns each angle is given away from ``x`` at t (k,): (k, n)."""
+        X = self._at(t)
+        turns: Array = np.round((self._turned(X) - X) / (2.0 * np.pi))
+        return turns
+
+    def _jump(self, a: float, b: float, turns: Array) -> tuple[float, float, Array]:
+        """The first place found between a, with these turns (n,), and b where they change: its ends, the turns then."""
+        after = self._turns(np.array([b]))[0]
+        while b - a > CUT:
+            middle = 0.5 * (a + b)
+            there = self._turns(np.array([middle]))[0]
+            if (there == turns).all():
+                a = middle
+            else:
+                b, after = middle, there
+        return a, b, after
+
     def _least(self, values: Values, rate: float | None) -> CurvePoint:
         """Where values are least; ``rate`` bounds how much they change for each unit of t, None: nothing does."""
         spans = self._lows(values) if rate is None else self._below(values, rate)
@@ -259,9 +299,12 @@ class SelfMotionCurve:
 
     def _below(self, values: Values, rate: float) -> list[tuple[float, float]]:
         """A span round the least value: others cannot be less by more than NEAR (Piyavskii 1972)."""
-        f = values(self.x)
-        a, b, fa, fb = self.t[:-1], self.t[1:], f[:-1], f[1:]
-        best, at = float(f.min()), float(self.t[int(np.argmin(f))])
+        pieces = self._pieces
+        parts = [values(self.x) if piece is self.t else values(self._at(piece)) for piece in pieces]
+        a, b = np.concatenate([t[:-1] for t in pieces]), np.concatenate([t[1:] for t in pieces])
+        fa, fb = np.concatenate([f[:-1] for f in parts]), np.concatenate([f[1:] for f in parts])
+        t, f = np.concatenate(pieces), np.concatenate(parts)
+        best, at = float(f.min()), float(t[int(np.argmin(f))])
         while True:
             hopeful = 0.5 * (fa + fb - rate * (b - a)) < best - NEAR
             a, b, fa, fb = a[hopeful], b[hopeful], fa[hopeful], fb[hopeful]
@@ -274,7 +317,8 @@ class SelfMotionCurve:
             a, b = np.append(a, middle), np.append(middle, b)
             fa, fb = np.append(fa, f), np.append(f, fb)
         width = min(float(np.diff(self.t).max()), 2.0 * NEAR / rate + 1e-3)
-        return [(max(at - width, 0.0), min(at + width, self.length))]
+        piece = next(t for t in pieces if t[0] <= at <= t[-1])
+        return [(max(at - width, float(piece[0])), min(at + width, float(piece[-1])))]
 
     def _sharpened(self, values: Values, a: float, b: float) -> tuple[float, float]:
         """Where values are least between a and b, by golden sections, and how much they are there."""

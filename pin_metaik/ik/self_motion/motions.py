@@ -318,7 +318,7 @@ class _Search:
             tangents = np.concatenate([-last[1][:0:-1], first[1]])
             ends = last[2], first[2]
         t = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
-        if t[-1] < SAME:
+        if t[-1] == 0.0:
             return None
         distinct = np.append(True, np.diff(t) > 0.0)  # a curve that begins at a limit may have its end twice
         points, tangents, t = points[distinct], tangents[distinct], t[distinct]
