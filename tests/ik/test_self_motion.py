@@ -198,8 +198,15 @@ def test_a_watch_ends_the_search_and_keeps_what_was_found() -> None:
     stopped = mik.self_motions(chain, pose, watch=lambda at: True)
     assert stopped.interrupted
     assert stopped.complete is None
+    assert np.isfinite(stopped.nearest(chain.reference).value)
+
+
+def test_a_pose_out_of_reach_has_no_curves_and_that_is_proved() -> None:
+    chain = chain_of("panda")
+    none = mik.self_motions(chain, pin.SE3(np.eye(3), np.array([2.0, 0.0, 0.0])))
+    assert none.complete is mik.Proof.BOXES and not len(none)
     with pytest.raises(InvalidSetting, match="no self-motion"):
-        stopped.nearest(chain.reference)
+        none.nearest(chain.reference)
 
 
 def test_what_has_no_curves_is_said_with_what_helps() -> None:

@@ -33,10 +33,10 @@ STEP = 0.05  # rad or m between the points of a curve, at most
 POINTS = 20_000  # of a curve at most
 CHUNK, MOST = 4_096, 8_192  # boxes looked at, and kept, at a time; kept in all
 FINER = 8.0, 64.0, 512.0  # by how much smaller boxes that are far from all curves are looked at
-SPREAD = 64  # of the boxes that are kept, from which descents start first
+SPREAD = 16  # of the boxes that are far from all curves, from which descents start first
 SEEDS = 512  # solutions to follow curves from, at a time
-LOOKED_UP, DRAWN, SEED = 128, 512, (DEFAULT_SEED, 0)  # configurations to descend from where boxes have no end
-DRAWN_BESIDE = 64  # where they cover all
+DRAWN, LOOKED_UP, DRAWN_MORE = 64, 128, 512  # configurations to descend from at first; where boxes have no end
+SEED = DEFAULT_SEED, 0
 SAME = 5e-3  # rad or m: a solution this near to a curve is on it
 TURN = 2.0 * np.pi
 
@@ -185,52 +185,46 @@ class _Search:
         self._problem, self._base, self._resolution, self._watch = problem, base, resolution, watch
         self._total = budget.evaluations or 0
         self._until = np.inf if budget.seconds is None else perf_counter() + budget.seconds
-        self._multi_turn = limits.multi_turn
+        self._turning = limits.multi_turn.astype(np.int64)
         self._lower = np.where(limits.multi_turn, -np.inf, limits.lower)
         self._upper = np.where(limits.multi_turn, np.inf, limits.upper)
 
     def run(self) -> None:
-        """Cover the limits with boxes, and find the curves that go through those that are kept.
+        """Find curves from some random configurations, then those through the boxes that cover the limits.
 
-        Where the boxes do not come to an end, curves are found from an atlas and at random; where they do, some random
-        descents are made as well, because curves that stay near to others may be missing.
+        Where there are no boxes, or no end of them, more descents are made, from an atlas and at random.
         """
-        target, chain = self._problem.targets[0], self._problem.chain
+        target, chain, apart = self._problem.targets[0], self._problem.chain, 0.5 * self._resolution
         free = not target.counts[3], not target.counts[4], not target.counts[5]
         near = 0.0 if all(target.counts[:3]) else np.inf
-        boxes = None
+        self._from(chain.sample(DRAWN, SEED), apart)
         if near == 0.0 or sum(free) < 2:
-            boxes = chain._boxes(0, target.pose.homogeneous, near, 0.0, free, least=0.5 * self._resolution, shrink=True)
-        if boxes is not None:
-            self.covered = self._is_covered(boxes)
-        starts = chain.sample(DRAWN_BESIDE if self.covered else DRAWN, SEED)
+            boxes = chain._boxes(0, target.pose.homogeneous, near, 0.0, free, least=apart, shrink=True)
+            self.covered = boxes is not None and self._is_covered(boxes)
         if not self.covered:
-            starts = np.concatenate([self._problem.near(LOOKED_UP), starts])
-        self._from(starts, 0.5 * self._resolution)
+            self._from(np.concatenate([self._problem.near(LOOKED_UP), chain.sample(DRAWN_MORE, SEED)]), apart)
 
     def _is_covered(self, boxes: Boxes) -> bool:
         """Find the curves through all boxes that are kept; whether there is one near all of them.
 
-        Descents start from some of them, then from those that are far from all curves; those that still are then are
-        split again, as exclusion is weak where boxes are large.
+        Descents start from those that are far from all curves, at first from some of them. Those that still are then
+        are split again, as exclusion is weak where boxes are large.
         """
-        far = self._kept(boxes)
+        kept = self._kept(boxes)
         for finer in (*FINER, None):
-            if far is None:
+            if kept is None:
                 return False
-            far = self._still_far(boxes, far, far[:: 1 + len(far) // SPREAD])
-            far = self._still_far(boxes, far, far)
+            far = kept[~self._is_near(boxes, kept)]
+            for stride in (1 + len(far) // SPREAD, 1):
+                if len(far):
+                    self._from(far[::stride, : self._problem.chain.n], boxes.least)
+                    far = far[~self._is_near(boxes, far)]
             if not len(far):
                 return True
             if finer is not None:
                 boxes = boxes.among(far, 0.5 * self._resolution / finer)
-                far = self._kept(boxes)
+                kept = self._kept(boxes)
         return False
-
-    def _still_far(self, boxes: Boxes, kept: Array, starts: Array) -> Array:
-        """Of boxes (k, 2 m), those far from all curves, after descents from the middles of others (s, 2 m)."""
-        self._from(starts[:, : self._problem.chain.n], boxes.least)
-        return kept[~self._is_near(boxes, kept)]
 
     def _kept(self, boxes: Boxes) -> Array | None:
         """Boxes (k, 2 m) that are kept; None, if the budget ends before, or there is no end of them."""
@@ -253,20 +247,20 @@ class _Search:
         from pin_metaik.kinematics.self_motion.near import mark_near
 
         n, wrist = self._problem.chain.n, boxes.arm.wrist
-        near, multi_turn = np.zeros(len(kept), np.int64), self._multi_turn.astype(np.int64)
+        near, side = np.zeros(len(kept), np.int64), np.zeros(len(kept))
         every, others = np.arange(n), np.setdiff1d(np.arange(n), wrist)
         wide = (kept[:, kept.shape[1] // 2 + wrist] > boxes.least).any(axis=1)
-        side = np.zeros(len(kept))
         if wide.any():
             side[wide] = np.sign(self._bends(boxes, kept[wide, :n]))
         for curve in self.curves:
-            bent = np.sign(self._bends(boxes, curve.x)) if wide.any() else np.zeros(len(curve.x))
-            for which in np.unique(side):
+            bent = np.sign(self._bends(boxes, curve.x)) if wide.any() else side
+            for which in (-1.0, 0.0, 1.0):
                 at = np.flatnonzero((side == which) & (near == 0))
-                x = curve.x if which == 0.0 else np.ascontiguousarray(curve.x[bent == which])
-                marks = np.zeros(len(at), np.int64)
-                mark_near(kept[at], x, every if which == 0.0 else others, multi_turn, self._resolution, marks)
-                near[at] = marks
+                if len(at):
+                    x = curve.x if which == 0.0 else curve.x[bent == which]
+                    marks = np.zeros(len(at), np.int64)
+                    mark_near(kept[at], x, others if which else every, self._turning, self._resolution, marks)
+                    near[at] = marks
         marked: NDArray[np.bool_] = near == 1
         return marked
 
@@ -301,19 +295,22 @@ class _Search:
         """Whether coordinates x (n,) lie on a curve: near to the line from one of its points to the next."""
         from pin_metaik.kinematics.self_motion.near import is_on_curve
 
-        return bool(is_on_curve(x, curve.x, self._multi_turn.astype(np.int64), SAME))
+        return bool(is_on_curve(x, curve.x, self._turning, SAME))
 
     def _followed(self, x: Array) -> SelfMotionCurve | None:
         """The curve through a solution x (n,), from end to end; None in a singularity, and for a point alone."""
-        first, last = self._trace(x, 1.0), None
-        if first is None:
+        from pin_metaik.kinematics.self_motion.trace import put_back
+
+        problem = self._problem
+        start, tangent = x[None].copy(), null_direction(problem.linearize(x)[1])[None]
+        if put_back(problem.chain.bare, problem.records, problem.kernel_rows, start, tangent) == 0:
             return None
+        start = np.clip(start, self._lower, self._upper)
+        first = self._trace(start[0], tangent[0], 1.0)
         if first[2].reason is EndReason.CLOSED:
             points, tangents, ends = first[0], first[1], (first[2], first[2])
         else:
-            last = self._trace(x, -1.0)
-            if last is None:
-                return None
+            last = self._trace(start[0], tangent[0], -1.0)
             points = np.concatenate([last[0][:0:-1], first[0]])
             tangents = np.concatenate([-last[1][:0:-1], first[1]])
             ends = last[2], first[2]
@@ -324,22 +321,15 @@ class _Search:
         points, tangents, t = points[distinct], tangents[distinct], t[distinct]
         return SelfMotionCurve(self._problem, self._base, points, t, ends, tangents)
 
-    def _trace(self, x: Array, way: float) -> tuple[Array, Array, CurveEnd] | None:
-        """Points (k, n) of the curve from x (n,) on, with their tangents, and how it ends; None in a singularity."""
-        from pin_metaik.kinematics.self_motion.trace import AT_LIMIT, CLOSED, put_back, trace
+    def _trace(self, start: Array, tangent: Array, way: float) -> tuple[Array, Array, CurveEnd]:
+        """Points (k, n) of the curve from a point (n,) on along its tangent, or against it, and how it ends."""
+        from pin_metaik.kinematics.self_motion.trace import AT_LIMIT, CLOSED, trace
 
         problem = self._problem
-        given = problem.chain.bare, problem.records, problem.kernel_rows
-        points, tangents = np.empty((POINTS, len(x))), np.empty((POINTS, len(x)))
-        start, tangent = x[None].copy(), null_direction(problem.linearize(x)[1])[None]
-        if put_back(*given, start, tangent) == 0:
-            return None
-        start[0] = np.clip(start[0], self._lower, self._upper)
-        tangents[0] = tangent[0]
-        multi_turn = self._multi_turn.astype(np.int64)
-        count, why, limit, spent = trace(
-            *given, self._lower, self._upper, multi_turn, start[0], way, STEP, self._left, points, tangents
-        )
+        given = problem.chain.bare, problem.records, problem.kernel_rows, self._lower, self._upper, self._turning
+        points, tangents = np.empty((POINTS, len(start))), np.empty((POINTS, len(start)))
+        tangents[0] = tangent
+        count, why, limit, spent = trace(*given, start, way, STEP, self._left, points, tangents)
         self.spent += spent
         end = CurveEnd(EndReason.CLOSED if why == CLOSED else EndReason.SINGULARITY)
         if why == AT_LIMIT:

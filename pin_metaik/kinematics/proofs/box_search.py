@@ -106,7 +106,7 @@ def cover(
             continue
         ways, straight = 1, False
         if has_wrist:
-            ways, straight = wrist_turns(arm, laid, centre, width, aligned, 2 if bends else 1, turned)
+            ways, straight = wrist_turns(arm, laid, centre, width, aligned, 1, turned)
             if ways == 0:
                 continue
             for k in range(3):
@@ -142,6 +142,8 @@ def cover(
             at = widest(width, splits, 1, FINER * least)
             at = widest(width, splits, 0, least) if at < 0 else at
         elif at < 0 and bends:
+            box = waiting[count]
+            ways, _ = wrist_turns(arm, laid, box[:n], box[n:], aligned, 2, turned)
             at = joint_with_copies(arm, turned, ways)
         if at >= 0:
             for side in range(2):
