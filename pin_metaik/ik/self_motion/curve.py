@@ -22,7 +22,7 @@ from pin_metaik.optimize.settings import positive
 Values: TypeAlias = Callable[[Array], Array]  # of coordinates (k, n)
 
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
-NEAR, SHARP = 1e-4, 1e-8  # how far off a least value may be before it is sharpened; then its interval, rad or m
+NEAR, SHARP = 1e-4, 1e-7  # how far off a least value may be before it is sharpened; then its interval, rad or m
 CUT = 1e-10  # rad or m of t: width of a place where an angle jumps by a whole turn
 BISECTIONS = 20  # of the place where a curve runs into an obstacle
 
@@ -143,10 +143,9 @@ class SelfMotionCurve:
             UnknownName: If the chain has no joint of such a name.
             InvalidSetting: If a weight is below 0.
         """
-        x = self.problem.chain.x(array("q", q, self.problem.chain.model.nq, error=InvalidConfiguration))
-        near = Weighted("nearest", weights or {})
-        measure = measure_of(near)
-        return self._least(lambda X: measure(self.problem, self._turned(X), x), self._rate(near))
+        point = self._least(*self._distance(q, weights))
+        assert point is not None
+        return point
 
     @checked
     def best(self, criterion: Selection) -> CurvePoint:
@@ -162,13 +161,9 @@ class SelfMotionCurve:
             UnknownName: No criterion of that name.
             InvalidSetting: The function fails for a configuration, or does not return a number.
         """
-        measure = measure_of(criterion)
-        if not isinstance(criterion, (str, Weighted)):
-            try:
-                criterion(self.q(0.0))
-            except TypeError as error:
-                raise InvalidSetting(f"criterion is a function of a configuration q (nq,), but: {error}") from error
-        return self._least(lambda X: measure(self.problem, self._turned(X), self._x0), self._rate(criterion))
+        point = self._least(*self._criterion(criterion))
+        assert point is not None
+        return point
 
     @checked
     def free(self, world: CollisionWorld, step: float = 0.02) -> list[tuple[float, float]]:
@@ -208,6 +203,23 @@ class SelfMotionCurve:
         """Coordinates (k, n) inside the limits, angles on a circle as the copy nearest to ``q0``."""
         limits = self.problem.limits
         return np.where(limits.multi_turn, limits.nearest_turns(X, self._x0), limits.clip(X))
+
+    def _distance(self, q: ArrayLike, weights: Mapping[str, float] | None) -> tuple[Values, float | None]:
+        """The distances from a configuration (nq,), and their rate."""
+        x = self.problem.chain.x(array("q", q, self.problem.chain.model.nq, error=InvalidConfiguration))
+        near = Weighted("nearest", weights or {})
+        measure = measure_of(near)
+        return lambda X: measure(self.problem, self._turned(X), x), self._rate(near)
+
+    def _criterion(self, criterion: Selection) -> tuple[Values, float | None]:
+        """The values of a criterion, and their rate."""
+        measure = measure_of(criterion)
+        if not isinstance(criterion, (str, Weighted)):
+            try:
+                criterion(self.q(0.0))
+            except TypeError as error:
+                raise InvalidSetting(f"criterion is a function of a configuration q (nq,), but: {error}") from error
+        return lambda X: measure(self.problem, self._turned(X), self._x0), self._rate(criterion)
 
     def _rate(self, criterion: Selection) -> float | None:
         """How much a criterion changes at most for each unit of joint motion; None: nothing is known."""
@@ -283,9 +295,14 @@ class SelfMotionCurve:
                 b, after = middle, there
         return a, b, after
 
-    def _least(self, values: Values, rate: float | None) -> CurvePoint:
-        """Where values are least; ``rate`` bounds how much they change for each unit of t, None: nothing does."""
-        spans = self._lows(values) if rate is None else self._below(values, rate)
+    def _least(self, values: Values, rate: float | None, below: float = np.inf) -> CurvePoint | None:
+        """Where values are least; None where that is known not to be below a number.
+
+        ``rate`` bounds how much values change for each unit of t; None: nothing does.
+        """
+        spans = self._lows(values) if rate is None else self._below(values, rate, below)
+        if not spans:
+            return None
         t, value = min((self._sharpened(values, *span) for span in spans), key=_value)
         return CurvePoint(t, self.q(t), value)
 
@@ -297,14 +314,19 @@ class SelfMotionCurve:
         lows = np.flatnonzero((known <= left) & (known <= right)).tolist()
         return [(float(self.t[max(i - 1, 0)]), float(self.t[min(i + 1, last)])) for i in lows]
 
-    def _below(self, values: Values, rate: float) -> list[tuple[float, float]]:
-        """A span round the least value: others cannot be less by more than NEAR (Piyavskii 1972)."""
+    def _below(self, values: Values, rate: float, below: float) -> list[tuple[float, float]]:
+        """A span round the least value: others cannot be less by more than NEAR (Piyavskii 1972).
+
+        There is none where it is not below a number.
+        """
         pieces = self._pieces
         parts = [values(self.x) if piece is self.t else values(self._at(piece)) for piece in pieces]
         a, b = np.concatenate([t[:-1] for t in pieces]), np.concatenate([t[1:] for t in pieces])
         fa, fb = np.concatenate([f[:-1] for f in parts]), np.concatenate([f[1:] for f in parts])
         t, f = np.concatenate(pieces), np.concatenate(parts)
         best, at = float(f.min()), float(t[int(np.argmin(f))])
+        if best >= below:
+            best, at = below, np.nan
         while True:
             hopeful = 0.5 * (fa + fb - rate * (b - a)) < best - NEAR
             a, b, fa, fb = a[hopeful], b[hopeful], fa[hopeful], fb[hopeful]
@@ -316,6 +338,8 @@ class SelfMotionCurve:
                 best, at = float(f.min()), float(middle[int(np.argmin(f))])
             a, b = np.append(a, middle), np.append(middle, b)
             fa, fb = np.append(fa, f), np.append(f, fb)
+        if np.isnan(at):
+            return []
         width = min(float(np.diff(self.t).max()), 2.0 * NEAR / rate + 1e-3)
         piece = next(t for t in pieces if t[0] <= at <= t[-1])
         return [(max(at - width, float(piece[0])), min(at + width, float(piece[-1])))]

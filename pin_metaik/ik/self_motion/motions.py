@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from pin_metaik.arguments import checked
@@ -16,7 +17,7 @@ from pin_metaik.ik.criteria import Selection
 from pin_metaik.ik.goals.pose import TargetLike
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.proof import Proof
-from pin_metaik.ik.self_motion.curve import CurvePoint, SelfMotionCurve
+from pin_metaik.ik.self_motion.curve import CurvePoint, SelfMotionCurve, Values
 from pin_metaik.ik.self_motion.search import Search
 from pin_metaik.kinematics import Chain
 from pin_metaik.optimize import Budget
@@ -63,7 +64,7 @@ class SelfMotions:
         Raises:
             InvalidSetting: There is no curve.
         """
-        return min((curve.nearest(q, weights) for curve in self._some()), key=_value)
+        return self._least(lambda curve: curve._distance(q, weights))
 
     @checked
     def best(self, criterion: Selection) -> CurvePoint:
@@ -72,21 +73,23 @@ class SelfMotions:
         Raises:
             InvalidSetting: There is no curve.
         """
-        return min((curve.best(criterion) for curve in self._some()), key=_value)
+        return self._least(lambda curve: curve._criterion(criterion))
 
-    def _some(self) -> tuple[SelfMotionCurve, ...]:
-        if not self.curves:
+    def _least(self, values_on: Callable[[SelfMotionCurve], tuple[Values, float | None]]) -> CurvePoint:
+        """Where values are least of all curves."""
+        least: CurvePoint | None = None
+        for curve in self.curves:
+            point = curve._least(*values_on(curve), np.inf if least is None else least.value)
+            if point is not None and (least is None or point.value < least.value):
+                least = point
+        if least is None:
             raise InvalidSetting("there is no self-motion to choose from: the target has no solution that was found")
-        return self.curves
+        return least
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values, for JSON: lengths in m, angles in rad."""
         plain = fields_of(self, "complete", "resolution", "interrupted", "evaluations", "seconds")
         return {"curves": [curve.as_dict() for curve in self.curves], **plain}
-
-
-def _value(point: CurvePoint) -> float:
-    return point.value
 
 
 @checked
