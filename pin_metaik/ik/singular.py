@@ -180,7 +180,7 @@ class Continua:
             x = self._nearest(curve, x0)
             if not any(self._are_one(x, other) for other in kept):
                 kept.append(x)
-        return np.array(kept)
+        return np.reshape(kept, (len(kept), len(x0)))
 
     def _is_new(self, x: Array) -> bool:
         from pin_metaik.kinematics.self_motion.near import is_on_curve
