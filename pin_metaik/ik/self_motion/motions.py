@@ -36,9 +36,8 @@ class SelfMotions:
     Attributes:
         curves: The curves, the longest first.
         complete: ``Proof.BOXES``: every solution inside the limits is within ``resolution`` of a point of one of the
-            curves, so that a missing curve would be that close to these all along. Of a spherical wrist not its three
-            coordinates are compared but only the side to which it is bent, but for places where it may be straight:
-            there its coordinates are, too. ``None``: nothing is proved.
+            curves in every coordinate, so that a missing curve would be that close to these all along. ``None``:
+            nothing is proved.
         resolution: rad or m; see ``complete``.
         evaluations: Forward kinematics computed, and boxes looked at.
         seconds: Time taken, s.

@@ -72,11 +72,11 @@ class Search:
         for finer in (*FINER, None):
             if kept is None:
                 return False
-            far = kept[~self._is_near(boxes, kept)]
+            far = kept[~self._is_near(kept)]
             for stride in (1 + len(far) // SPREAD, 1):
                 if len(far):
                     self._from(far[::stride, : self._problem.chain.n], boxes.least)
-                    far = far[~self._is_near(boxes, far)]
+                    far = far[~self._is_near(far)]
             if not len(far):
                 return True
             if finer is not None:
@@ -96,40 +96,15 @@ class Search:
             tell(self._watch, Progress(self.spent, self._total))
         return np.concatenate(kept) if kept else np.empty((0, boxes.arm.whole.shape[1]))
 
-    def _is_near(self, boxes: Boxes, kept: Array) -> NDArray[np.bool_]:
-        """(k,) whether all of each box (k, 2 m) is within the resolution of a point of a curve.
-
-        Where a box is long in the coordinates of a wrist, these are left out, but the point must have it bent to the
-        side that all of the box does.
-        """
+    def _is_near(self, kept: Array) -> NDArray[np.bool_]:
+        """(k,) whether all of each box (k, 2 m) is within the resolution of a point of a curve."""
         from pin_metaik.kinematics.self_motion.near import mark_near
 
-        n, wrist = self._problem.chain.n, boxes.arm.wrist
-        near, side = np.zeros(len(kept), np.int64), np.zeros(len(kept))
-        every, others = np.arange(n), np.setdiff1d(np.arange(n), wrist)
-        wide = (kept[:, kept.shape[1] // 2 + wrist] > boxes.least).any(axis=1)
-        if wide.any():
-            side[wide] = np.sign(self._bends(boxes, kept[wide, :n]))
+        near = np.zeros(len(kept), np.int64)
         for curve in self.curves:
-            bent = np.sign(self._bends(boxes, curve.x)) if wide.any() else side
-            for which in (-1.0, 0.0, 1.0):
-                at = np.flatnonzero((side == which) & (near == 0))
-                if len(at):
-                    x = curve.x if which == 0.0 else curve.x[bent == which]
-                    marks = np.zeros(len(at), np.int64)
-                    mark_near(kept[at], x, others if which else every, self._turning, self._resolution, marks)
-                    near[at] = marks
+            mark_near(kept, curve.x, self._turning, self._resolution, near)
         marked: NDArray[np.bool_] = near == 1
         return marked
-
-    def _bends(self, boxes: Boxes, X: Array) -> Array:
-        """Triple product (k,) of a wrist's axes at coordinates X (k, n): 0 where it is straight."""
-        from pin_metaik.kinematics.self_motion.near import bends
-
-        joints, wiring, _, tip, *_ = boxes.arm.arrays
-        bent = np.empty(len(X))
-        bends(joints, wiring, tip, np.ascontiguousarray(X), bent)
-        return bent
 
     @property
     def _left(self) -> int:

@@ -110,12 +110,6 @@ class ProofArm:
         return replace(self, arrays=(*self.arrays[:7], np.array([has_wrist, how])))
 
     @property
-    def wrist(self) -> Ints:
-        """(3,) coordinates of a wrist that is the chain's own, (0,) if it has none."""
-        columns = self.arrays[1][-3:, COLUMN]
-        return columns if self.arrays[7][0] == 1 and (columns < self.n).all() else columns[:0]
-
-    @property
     def movers(self) -> int:
         """How many of the chain's coordinates move the tip."""
         return int((np.unique(self.arrays[1][:, 0]) < self.n).sum())

@@ -12,7 +12,7 @@ import math
 
 from pin_metaik.compiled import Floats, inline, shared
 from pin_metaik.kinematics.kernel.closed_form import minus, vector
-from pin_metaik.kinematics.kernel.layout import COLUMN, SCALE
+from pin_metaik.kinematics.kernel.layout import COLUMN
 from pin_metaik.kinematics.proofs.balls import arc_from_to
 from pin_metaik.kinematics.proofs.box import BoxArm, Laid
 from pin_metaik.kinematics.proofs.box_linear import Equations
@@ -136,16 +136,13 @@ def first_joint_turned(
 
 
 @inline
-def joint_with_copies(arm: BoxArm, turned: Floats, ways: int) -> int:
-    """The coordinate of a wrist's second joint if its range holds a bend more than once, by whole turns; else -1.
-
-    ``turned`` (2, 9) tells the ranges of a wrist that is not straight: less than half a turn for each bend.
-    """
-    s = arm.wiring.shape[0] - 2
+def ranges_widely(turned: Floats, ways: int, least: float) -> bool:
+    """Whether half the range of a wrist's joint, of which ``turned`` (2, 9) tells, is above ``least`` for some bend."""
     for way in range(ways):
-        if abs(arm.joints[s, SCALE]) * (turned[way, 7] - turned[way, 4]) > math.pi:
-            return int(arm.wiring[s, COLUMN])
-    return -1
+        for k in range(3):
+            if turned[way, 6 + k] - turned[way, 3 + k] > 2.0 * least:
+                return True
+    return False
 
 
 @inline

@@ -16,12 +16,13 @@ from pin_metaik.compiled import Floats, Ints, inline, jit
 from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES
 from pin_metaik.kinematics.proofs.box import BENT, SPLIT, BoxArm, laid_for, lay
 from pin_metaik.kinematics.proofs.box_balls import excluded_by_balls
-from pin_metaik.kinematics.proofs.box_contract import bend, contracted, first_joint_turned, joint_with_copies
+from pin_metaik.kinematics.proofs.box_contract import bend, contracted, first_joint_turned, ranges_widely
 from pin_metaik.kinematics.proofs.box_linear import separated, to_first_order
 from pin_metaik.kinematics.proofs.box_wrist import wrist_turns
 
 FIRST_ORDER = 3.0  # rad, sum of the half widths up to which the series is worth looking at
-SHRUNK = 0.75  # of the sum of its half widths, below which a box that was made smaller is looked at anew
+SMALL = 0.5  # rad, the same sum, below which pairs of axes tell little that shrinking does not
+SHRUNK = 0.75  # of the sum of its half widths, below which a box that was shrunk is looked at anew
 FINER = 0.03  # of the least half width: that of the other joints before those of a wrist that may be straight are split
 
 ARM = "f8[:,::1], i8[:,::1], f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], i8[::1]"
@@ -102,7 +103,12 @@ def cover(
             centre[c], width[c] = waiting[count, c], waiting[count, n + c]
             start[c] = centre[c]
         lay(arm, target, centre, width, laid)
-        if excluded_by_balls(arm, laid, near, aligned, weights):
+        total = whole = 0.0
+        for k in range(S):
+            half = laid.half[k] if wiring[k, ROTATES] == 1 else 0.0
+            whole += half
+            total += half if k < last else 0.0
+        if excluded_by_balls(arm, laid, near, aligned, total > SMALL or not shrinks, weights):
             continue
         ways, straight = 1, False
         if has_wrist:
@@ -112,11 +118,6 @@ def cover(
             for k in range(3):
                 start[wiring[last + k, COLUMN]] = turned[0, k]
         straight = wrist[1] == SPLIT or (bends and straight)
-        total = whole = 0.0
-        for k in range(S):
-            half = laid.half[k] if wiring[k, ROTATES] == 1 else 0.0
-            whole += half
-            total += half if k < last else 0.0
         alone = has_wrist and not (straight and whole < FIRST_ORDER)
         if total < FIRST_ORDER:
             cut = last - 1 if alone else middle_joint(arm, laid.half, S, whole)
@@ -144,7 +145,10 @@ def cover(
         elif at < 0 and bends:
             box = waiting[count]
             ways, _ = wrist_turns(arm, laid, box[:n], box[n:], aligned, 2, turned)
-            at = joint_with_copies(arm, turned, ways)
+            straight = ranges_widely(turned, ways, least)
+            if straight:
+                at = widest(width, splits, 1, FINER * least)
+                at = widest(width, splits, 0, least) if at < 0 else at
         if at >= 0:
             for side in range(2):
                 put(centre, width, waiting[count])
