@@ -65,18 +65,18 @@ class Search:
     def _is_covered(self, boxes: Boxes) -> bool:
         """Find the curves through all boxes that are kept; whether there is one near all of them.
 
-        Descents start from those that are far from all curves, at first from some of them. Those that still are then
-        are split again, as exclusion is weak where boxes are large.
+        Descents start from those to which no curve comes, at first from some of them. Those that are far from all
+        curves then are split again, as exclusion is weak where boxes are large.
         """
         kept = self._kept(boxes)
         for finer in (*FINER, None):
             if kept is None:
                 return False
-            far = kept[~self._is_near(kept)]
-            for stride in (1 + len(far) // SPREAD, 1):
-                if len(far):
-                    self._from(far[::stride, : self._problem.chain.n], boxes.least)
-                    far = far[~self._is_near(far)]
+            for stride in (1 + len(kept) // SPREAD, 1):
+                others = kept[~self._are_met(kept)][::stride]
+                if len(others):
+                    self._from(others[:, : self._problem.chain.n], boxes.least)
+            far = kept[~self._are_near(kept)]
             if not len(far):
                 return True
             if finer is not None:
@@ -96,13 +96,20 @@ class Search:
             tell(self._watch, Progress(self.spent, self._total))
         return np.concatenate(kept) if kept else np.empty((0, boxes.arm.whole.shape[1]))
 
-    def _is_near(self, kept: Array) -> NDArray[np.bool_]:
+    def _are_near(self, kept: Array) -> NDArray[np.bool_]:
         """(k,) whether all of each box (k, 2 m) is within the resolution of a point of a curve."""
+        return self._marked(kept, 1.0, self._resolution)
+
+    def _are_met(self, kept: Array) -> NDArray[np.bool_]:
+        """(k,) whether a curve comes to each box (k, 2 m), or nearly: where none does there may be another one."""
+        return self._marked(kept, -1.0, STEP)
+
+    def _marked(self, kept: Array, side: float, distance: float) -> NDArray[np.bool_]:
         from pin_metaik.kinematics.self_motion.near import mark_near
 
         near = np.zeros(len(kept), np.int64)
         for curve in self.curves:
-            mark_near(kept, curve.x, self._turning, self._resolution, near)
+            mark_near(kept, curve.x, self._turning, side, distance, near)
         marked: NDArray[np.bool_] = near == 1
         return marked
 

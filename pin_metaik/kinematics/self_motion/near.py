@@ -9,14 +9,14 @@ from pin_metaik.kinematics.kernel.forward import FULL_TURN
 
 
 @inline
-def is_within(box: Floats, x: Floats, multi_turn: Ints, resolution: float) -> bool:
-    """Whether all of a box (2 m,) is within the resolution of x (n,) in each of its coordinates."""
+def is_within(box: Floats, x: Floats, multi_turn: Ints, side: float, distance: float) -> bool:
+    """Whether the far side of a box (2 m,), or its near one (``side`` -1), is so near to x (n,) in each coordinate."""
     m = box.shape[0] // 2
     for c in range(x.shape[0]):
         way = x[c] - box[c]
         if multi_turn[c] == 1:
             way -= FULL_TURN * np.round(way / FULL_TURN)
-        if abs(way) + box[m + c] > resolution:
+        if abs(way) + side * box[m + c] > distance:
             return False
     return True
 
@@ -50,12 +50,12 @@ def is_on_curve(x: Floats, X: Floats, multi_turn: Ints, same: float) -> bool:
     return False
 
 
-@jit("void(f8[:,::1], f8[:,::1], i8[::1], f8, i8[::1])")
-def mark_near(boxes: Floats, X: Floats, multi_turn: Ints, resolution: float, near: Ints) -> None:
-    """Mark with 1 those of the boxes (k, 2 m) that are within the resolution of a point X (p, n)."""
+@jit("void(f8[:,::1], f8[:,::1], i8[::1], f8, f8, i8[::1])")
+def mark_near(boxes: Floats, X: Floats, multi_turn: Ints, side: float, distance: float, near: Ints) -> None:
+    """Mark with 1 the boxes (k, 2 m) whose far or near side is so near to a point X (p, n); see ``is_within``."""
     for k in range(boxes.shape[0]):
         if near[k] == 0:
             for i in range(X.shape[0]):
-                if is_within(boxes[k], X[i], multi_turn, resolution):
+                if is_within(boxes[k], X[i], multi_turn, side, distance):
                     near[k] = 1
                     break
