@@ -17,12 +17,10 @@ def lean(code: CompileResult) -> CompileResult:
     and for others to link in: nobody links a loop. Of it there remains the name that Python calls.
     """
     library, description = code.library, code.fndesc
-    library._ensure_finalized()  # now it knows what it needs
     if not isinstance(library, parts.PartLibrary | separate_parts.SeparateLibrary):
         called = f'define void @"{description.llvm_cpython_wrapper_name}"() {{ unreachable }}'
         library._shared_module = binding.parse_assembly(called)
-    needed = [each for each in library._reload_init if each.symbol != description.llvm_func_name]
-    return code._replace(type_annotation="", reload_init=needed)
+    return code._replace(type_annotation="", reload_init=separate_parts.needed_by(library))
 
 
 def read(context: Any, payload: tuple[Any, ...]) -> CompileResult | None:

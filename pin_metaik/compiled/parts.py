@@ -7,7 +7,7 @@ the arm's kernel are compiled in half the processor time, and the loops are as q
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from llvmlite import binding
@@ -59,7 +59,13 @@ class LoopCompiler(Compiler):
 
 
 class PartLibrary(JITCodeLibrary):
-    """LLVM's code of a part and of those that it calls, for loops to link in."""
+    """LLVM's code of a part and of those that it calls, for loops to link in.
+
+    Attributes:
+        needs: What it said on disk that it needs.
+    """
+
+    needs: Sequence[Any] = ()
 
     def _optimize_final_module(self) -> None:
         """Is done in the loops."""
@@ -107,13 +113,13 @@ def read(context: Any, payload: tuple[Any, ...]) -> CompileResult:
     library = PartLibrary(context.codegen(), name)
     library._final_module = binding.parse_bitcode(bitcode)
     library._finalize_final_module()
+    *_, library.needs, _ = payload
     return result(context, library, payload)
 
 
 def result(context: Any, library: JITCodeLibrary, payload: tuple[Any, ...]) -> CompileResult:
     """What numba's compiler gave when it compiled a part that now is a library read from disk."""
-    _, description, environment, signature, _, _, _, needed, _ = payload
-    library._reload_init.update(needed)
+    _, description, environment, signature, *_ = payload
     return compile_result(
         typing_context=context.typing_context,
         target_context=context,
@@ -124,5 +130,4 @@ def result(context: Any, library: JITCodeLibrary, payload: tuple[Any, ...]) -> C
         fndesc=description,
         library=library,
         environment=environment,
-        reload_init=needed,
     )

@@ -49,7 +49,13 @@ class Needed:
 
 
 class SeparateLibrary(JITCodeLibrary):
-    """Machine code of a part, and nothing for loops to link in but its name."""
+    """Machine code of a part, and nothing for loops to link in.
+
+    Attributes:
+        itself: What a loop needs that calls it.
+    """
+
+    itself: Needed
 
     def __init__(self, codegen: Any, name: str) -> None:
         super().__init__(codegen, name)
@@ -93,12 +99,18 @@ class Separate(parts.Part):
             return super().compile(arguments)
 
     def add_overload(self, code: CompileResult) -> None:
-        """Let loops find it, and those on disk know that they need it."""
+        """Let loops find it, and say that they need it."""
         super().add_overload(code)
-        arguments = tuple(code.signature.args)
-        needed = Needed(self.py_func.__module__, self.py_func.__qualname__, arguments, code.fndesc.llvm_func_name)
-        code.library._ensure_finalized()
-        code.library._reload_init.add(needed)
+        function, arguments = self.py_func, tuple(code.signature.args)
+        code.library.itself = Needed(function.__module__, function.__qualname__, arguments, code.fndesc.llvm_func_name)
+
+
+def needed_by(library: JITCodeLibrary) -> list[Needed]:
+    """What the code of a loop or a part calls, without what that calls itself."""
+    found = dict.fromkeys(getattr(library, "needs", ()))
+    for each in library._linking_libraries:
+        found |= dict.fromkeys([each.itself] if isinstance(each, SeparateLibrary) else needed_by(each))
+    return [*found]
 
 
 def read(context: Any, payload: tuple[Any, ...]) -> CompileResult:
