@@ -18,7 +18,7 @@ from numba.core.compiler_machinery import PassManager
 from numba.core.registry import CPUDispatcher
 
 BITCODE = "bitcode"  # numba's name for a library that is kept as LLVM's code
-# Looking for closures and for sums of whole arrays took a thirtieth of compiling; loops have none.
+# To look for closures and for formulas of whole arrays took a thirtieth of compiling; loops have one difference.
 NEEDLESS = untyped_passes.InlineClosureLikes, typed_passes.NopythonRewrites
 
 
