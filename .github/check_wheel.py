@@ -54,7 +54,7 @@ for kind, solve in kinds.items():
     assert solve(), kind
     print(f"{time.perf_counter() - start:7.2f} s, {time.process_time() - busy:5.2f} s of processor:  {kind}")
 print(f"{time.perf_counter() - began:7.2f} s, {time.process_time():5.2f} s of processor:  together")
-loops = [each for each in gc.get_objects() if type(each).__name__ == "CPUDispatcher"]
+loops = [each for each in gc.get_objects() if type(each).__name__ in ("CPUDispatcher", "Separate")]
 compiled = sum(sum(loop.stats.cache_misses.values()) for loop in loops)
 print(compiled, "loops compiled,", sum(sum(loop.stats.cache_hits.values()) for loop in loops), "read", flush=True)
 sys.exit(compiled > 0)

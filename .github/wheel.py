@@ -19,14 +19,14 @@ from tempfile import TemporaryDirectory
 # Run with the unpacked wheel on the path: its sources' digest is the stamp of the code.
 COMPILE = """
 import sys
-from pin_metaik.compiled import LOOPS, ahead
+from pin_metaik.compiled import ahead
 if __name__ == "__main__":
     versions, missing = ahead.versions()
     sys.exit("\\n".join(missing)) if missing else None
     for done, loop in enumerate(ahead.each(ahead.Version.compile, versions), 1):
         print(f"{done:3d} of {len(versions)}: {loop.module}.{loop.name}", flush=True)
-    for loop in LOOPS.values():
-        loop.machine_code.ship()
+    for code in ahead.machine_code():
+        code.ship()
 """
 # Of Pinocchio's own wheels; machine code calls nothing but what numba finds for it at run time.
 SYSTEMS = {"Linux": "manylinux_2_28", "Darwin": "macosx_11_0"}

@@ -9,7 +9,8 @@ import pin_metaik
 
 PACKAGE = Path(pin_metaik.__file__).parent
 PROJECT = PACKAGE.parent / "pyproject.toml"
-COMPILED = {"jit", "inline", "shared", "exact", "allocating"}  # loops and their parts take flat arrays
+# loops and their parts take flat arrays
+COMPILED = {"jit", "inline", "shared", "separate", "separate_allocating", "exact", "allocating"}
 MOST = 8  # arguments that may be given by their place; of a command they are options with names
 
 

@@ -13,6 +13,7 @@ from pin_metaik.arrays import Array
 from pin_metaik.compiled.loop import LOOSE, OPTIONS, Loop
 from pin_metaik.compiled.on_disk import MachineCode
 from pin_metaik.compiled.parts import Part
+from pin_metaik.compiled.separate_parts import Separate
 
 Floats = Array
 Singles = NDArray[np.float32]
@@ -54,25 +55,36 @@ PART: dict[str, Any] = {**OPTIONS, "_nrt": False}
 
 def inline(function: F) -> F:
     """A part of a loop: compiled into each loop that calls it, with the constants of that loop."""
-    return cast(F, _part(function, fastmath=LOOSE, forceinline=True, **PART))
+    return cast(F, _part(Part(function, fastmath=LOOSE, forceinline=True, **PART), "inline"))
 
 
 def shared(function: F) -> F:
     """A part that a loop calls from several places: it is in the loop once."""
-    return cast(F, _part(function, fastmath=LOOSE, forceinline=False, **PART))
+    return cast(F, _part(Part(function, fastmath=LOOSE, forceinline=False, **PART), "shared"))
 
 
 def exact(function: F) -> F:
     """A part of a loop whose roundings must come in the order written."""
-    return cast(F, _part(function, fastmath={"contract"}, forceinline=True, **PART))
+    return cast(F, _part(Part(function, fastmath={"contract"}, forceinline=True, **PART), "exact"))
 
 
 def allocating(function: F) -> F:
     """A part that makes arrays for a loop before it begins, or returns views of them."""
-    return cast(F, _part(function, fastmath=LOOSE, forceinline=False, **OPTIONS))
+    return cast(F, _part(Part(function, fastmath=LOOSE, forceinline=False, **OPTIONS), "allocating"))
 
 
-def _part(function: Callable[..., Any], **options: Any) -> Part:
-    part = Part(function, **options)
-    part._cache = MachineCode(function)
+def separate(function: F) -> F:
+    """A part that many loops call seldom: it has machine code of its own, and is in none of them."""
+    return cast(F, _part(Separate(function, fastmath=LOOSE, forceinline=False, **PART), "separate"))
+
+
+def separate_allocating(function: F) -> F:
+    """The same of a part that makes arrays."""
+    return cast(
+        F, _part(Separate(function, fastmath=LOOSE, forceinline=False, _nrt=True, **OPTIONS), "separate_allocating")
+    )
+
+
+def _part(part: Part, variant: str) -> Part:
+    part._cache = MachineCode(part.py_func, variant)
     return part

@@ -13,7 +13,8 @@ from multiprocessing import get_context
 from pathlib import Path
 
 from pin_metaik.compiled import LOOPS
-from pin_metaik.compiled.on_disk import kept_in
+from pin_metaik.compiled.on_disk import MachineCode, kept_in
+from pin_metaik.compiled.separate_parts import SEPARATE
 from pin_metaik.compiled.sources import modules
 from pin_metaik.errors import CannotWrite, MissingExtra
 from pin_metaik.interrupts import deaf_children
@@ -64,6 +65,11 @@ def folder_for(loops: list[Version]) -> Path | None:
             "to a folder that can be written"
         )
     return Path(os.path.commonpath([str(folder) for folder in folders])) if folders else None
+
+
+def machine_code() -> list[MachineCode]:
+    """Of all loops, and of the parts that have some of their own."""
+    return [*(loop.machine_code for loop in LOOPS.values()), *(part._cache for part in SEPARATE.values())]
 
 
 def each(work: Callable[[Version], None], loops: list[Version]) -> Iterator[Version]:

@@ -14,6 +14,7 @@ from typing import Any, cast
 import numba
 
 from pin_metaik.compiled.on_disk import MachineCode
+from pin_metaik.compiled.parts import LoopCompiler
 from pin_metaik.compiled.types_of_calls import found_out_once
 from pin_metaik.interrupts import Pressed
 
@@ -76,7 +77,9 @@ class Loop:
         """Numba's function, compiled now or read from the cache."""
         # broken off, numba would compile nothing more in this process
         with Pressed(held=True), uncollected():
-            loop = numba.njit(fastmath=LOOSE, no_cfunc_wrapper=True, **OPTIONS)(self.function)
+            loop = numba.njit(pipeline_class=LoopCompiler, fastmath=LOOSE, no_cfunc_wrapper=True, **OPTIONS)(
+                self.function
+            )
             loop._cache = self.machine_code
             signature = self.signatures[without]
             with nullcontext() if loop._cache.has(signature) else loop._cache.turn(), found_out_once():

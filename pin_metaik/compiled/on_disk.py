@@ -23,7 +23,7 @@ from numba.core import caching, config
 from numba.core.registry import cpu_target
 
 from pin_metaik.cache_folder import cache_folder
-from pin_metaik.compiled import parts
+from pin_metaik.compiled import kept
 from pin_metaik.compiled.baseline import Baseline, baseline
 from pin_metaik.compiled.sources import PACKAGE, digest
 from pin_metaik.locks import locked
@@ -61,16 +61,17 @@ def kept_in(file: Path) -> Path | None:
 
 
 class MachineCode(caching.NullCache):
-    """What numba's dispatcher asks for the machine code of one function."""
+    """What numba's dispatcher asks for the machine code of one function, or of one of its variants."""
 
-    def __init__(self, function: Callable[..., Any]) -> None:
+    def __init__(self, function: Callable[..., Any], variant: str = "") -> None:
         self._function, self._file = function, Path(function.__code__.co_filename)
-        self._shelves = [Shelf(function, folder) for folder in folders(self._file)]
+        self._shelves = [Shelf(function, folder, variant) for folder in folders(self._file)]
         processor = baseline()
-        shipped = [] if processor is None else [Shipped(function, SHIPPED / _inside(self._file), processor)]
+        inside = SHIPPED / _inside(self._file)
+        shipped = [] if processor is None else [Shipped(function, inside, variant, processor)]
         self._readable: list[Shelf] = [*shipped, *self._shelves]
 
-    def has(self, signature: str) -> bool:
+    def has(self, signature: Any) -> bool:
         """Whether there is code for a signature, to go by the indices; a file may still turn out to be cut off."""
         for shelf in self._readable:
             with suppress(*UNREADABLE):
@@ -124,11 +125,11 @@ class MachineCode(caching.NullCache):
 class Shelf(caching.FunctionCache):
     """Numba's cache of one function in a given folder, which need be neither writable nor there."""
 
-    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
-        self._impl_class = partial(_Implementation, folder=folder)
+    def __init__(self, function: Callable[..., Any], folder: Path, variant: str) -> None:
+        self._impl_class = partial(_Implementation, folder=folder, variant=variant)
         super().__init__(function)
 
-    def has(self, signature: str) -> bool:
+    def has(self, signature: Any) -> bool:
         """Whether the index knows code for a signature and this processor."""
         return self._index_key(signature, cpu_target.target_context.codegen()) in self._cache_file._load_index()
 
@@ -140,8 +141,8 @@ class Shelf(caching.FunctionCache):
 class Shipped(Shelf):
     """Machine code that came with the package, for a processor with a subset of the instructions of this one."""
 
-    def __init__(self, function: Callable[..., Any], folder: Path, processor: Baseline) -> None:
-        super().__init__(function, folder)
+    def __init__(self, function: Callable[..., Any], folder: Path, variant: str, processor: Baseline) -> None:
+        super().__init__(function, folder, variant)
         self._processor = processor
 
     def _index_key(self, sig: Any, codegen: Any) -> Any:
@@ -152,17 +153,17 @@ class Shipped(Shelf):
 class _Implementation(caching.CompileResultCacheImpl):
     """How numba names and writes the files of one function."""
 
-    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
+    def __init__(self, function: Callable[..., Any], folder: Path, variant: str) -> None:
         self._lineno = function.__code__.co_firstlineno
         self._locator = _Locator(function, folder)
-        name = f"{Path(function.__code__.co_filename).stem}.{function.__qualname__}"
+        name = f"{Path(function.__code__.co_filename).stem}.{function.__qualname__}{variant and '.'}{variant}"
         self._filename_base = self.get_filename_base(name, getattr(sys, "abiflags", ""))
 
     def reduce(self, code: Any) -> tuple[Any, ...]:
-        return cast(tuple[Any, ...], super().reduce(parts.lean(code)))
+        return cast(tuple[Any, ...], super().reduce(kept.lean(code)))
 
     def rebuild(self, target_context: Any, payload: tuple[Any, ...]) -> Any:
-        return parts.read(target_context, payload) or super().rebuild(target_context, payload)
+        return kept.read(target_context, payload) or super().rebuild(target_context, payload)
 
 
 class _Locator(caching._CacheLocator):

@@ -7,43 +7,65 @@ the arm's kernel are compiled in half the processor time, and the loops are as q
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from llvmlite import binding
+from numba.core import typed_passes, untyped_passes
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler, CompileResult, compile_result
+from numba.core.compiler import Compiler, CompileResult, Flags, compile_result
+from numba.core.compiler_machinery import PassManager
 from numba.core.registry import CPUDispatcher
 
 BITCODE = "bitcode"  # numba's name for a library that is kept as LLVM's code
+# To look for closures and for formulas of whole arrays took a thirtieth of compiling; loops have one difference.
+NEEDLESS = untyped_passes.InlineClosureLikes, typed_passes.NopythonRewrites
 
 
-class Part(CPUDispatcher):
-    """Numba's dispatcher of a part: loops call it, Python cannot."""
+class QuickFlags(Flags):
+    """Numba's flags.
 
-    def __init__(self, function: Callable[..., Any], **options: Any) -> None:
-        super().__init__(function, targetoptions={"nopython": True, **options}, pipeline_class=PartCompiler)
+    It compares them whenever it looks for what a call means, which took a sixtieth of compiling, and has them in the
+    names of functions, where sets among them come in another order in every process.
+    """
 
-    def add_overload(self, code: CompileResult) -> None:
-        """Let loops find it; there is nothing that Python could call."""
-        self.overloads[tuple(code.signature.args)] = code
+    def __hash__(self) -> int:
+        return HASH
+
+    def __eq__(self, other: object) -> bool:
+        return bool((isinstance(other, Flags) and self._values == other._values) or super().__eq__(other))
+
+    def get_mangle_string(self) -> str:
+        """The same for all: functions are numbered, too."""
+        return "loop"
 
 
-class PartCompiler(Compiler):
-    """Numba's compiler up to LLVM's code."""
+HASH = hash(Flags())  # is that of their names, and so of all
 
-    def compile_extra(self, function: Callable[..., Any]) -> CompileResult:
-        """The part's library, which stands for it where numba would have a function that Python can call."""
-        state = self.state
-        state.library = library = PartLibrary(state.targetctx.codegen(), function.__qualname__)
-        state.flags.no_compile = state.flags.no_cpython_wrapper = state.flags.no_cfunc_wrapper = True
-        code = super().compile_extra(function)._replace(entry_point=library)
-        state.targetctx.insert_user_function(library, code.fndesc, [library])
-        return code
+
+class LoopCompiler(Compiler):
+    """Numba's compiler without the passes for what loops do not have."""
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*(QuickFlags(each) if isinstance(each, Flags) else each for each in arguments))
+
+    def define_pipelines(self) -> list[PassManager]:
+        """Numba's own, less these."""
+        pipelines: list[PassManager] = super().define_pipelines()
+        for pipeline in pipelines:
+            pipeline.passes = [each for each in pipeline.passes if each[0] not in NEEDLESS]
+            pipeline.finalize()
+        return pipelines
 
 
 class PartLibrary(JITCodeLibrary):
-    """LLVM's code of a part and of those that it calls, for loops to link in."""
+    """LLVM's code of a part and of those that it calls, for loops to link in.
+
+    Attributes:
+        needs: What it said on disk that it needs.
+    """
+
+    needs: Sequence[Any] = ()
 
     def _optimize_final_module(self) -> None:
         """Is done in the loops."""
@@ -57,26 +79,47 @@ class PartLibrary(JITCodeLibrary):
         return (self.name, BITCODE, self._final_module.as_bitcode())
 
 
-def lean(code: CompileResult) -> CompileResult:
-    """What is to be kept of a loop or a part, without what nobody asks for.
+class PartCompiler(LoopCompiler):
+    """Numba's compiler up to LLVM's code."""
 
-    That is numba's report of the types, and beside the machine code of a loop its bitcode, which is three times as long
-    and for others to link in: nobody links a loop. Of it there remains the name that Python calls.
-    """
-    if not isinstance(code.library, PartLibrary):
-        called = f'define void @"{code.fndesc.llvm_cpython_wrapper_name}"() {{ unreachable }}'
-        code.library._shared_module = binding.parse_assembly(called)
-    return code._replace(type_annotation="")
+    library: type[JITCodeLibrary] = PartLibrary
+
+    def compile_extra(self, function: Callable[..., Any]) -> CompileResult:
+        """The part's library, which stands for it where numba would have a function that Python can call."""
+        state = self.state
+        state.library = library = self.library(state.targetctx.codegen(), function.__qualname__)
+        state.flags.no_compile = state.flags.no_cpython_wrapper = state.flags.no_cfunc_wrapper = True
+        code = super().compile_extra(function)._replace(entry_point=library)
+        state.targetctx.insert_user_function(library, code.fndesc, [library])
+        return code
 
 
-def read(context: Any, payload: tuple[Any, ...]) -> CompileResult | None:
-    """A part from what numba's ``CompileResult`` was reduced to; None: that is of a loop."""
-    (name, kind, bitcode), description, environment, signature, *_ = payload
-    if kind != BITCODE:
-        return None
+class Part(CPUDispatcher):
+    """Numba's dispatcher of a part: loops call it, Python cannot."""
+
+    compiler = PartCompiler
+
+    def __init__(self, function: Callable[..., Any], **options: Any) -> None:
+        super().__init__(function, targetoptions={"nopython": True, **options}, pipeline_class=self.compiler)
+
+    def add_overload(self, code: CompileResult) -> None:
+        """Let loops find it; there is nothing that Python could call."""
+        self.overloads[tuple(code.signature.args)] = code
+
+
+def read(context: Any, payload: tuple[Any, ...]) -> CompileResult:
+    """A part from what numba's ``CompileResult`` was reduced to."""
+    (name, _, bitcode), *_ = payload
     library = PartLibrary(context.codegen(), name)
     library._final_module = binding.parse_bitcode(bitcode)
     library._finalize_final_module()
+    *_, library.needs, _ = payload
+    return result(context, library, payload)
+
+
+def result(context: Any, library: JITCodeLibrary, payload: tuple[Any, ...]) -> CompileResult:
+    """What numba's compiler gave when it compiled a part that now is a library read from disk."""
+    _, description, environment, signature, *_ = payload
     return compile_result(
         typing_context=context.typing_context,
         target_context=context,

@@ -16,10 +16,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, allocating, inline, jit
-from pin_metaik.kinematics.kernel.descent import step
+from pin_metaik.compiled import Floats, Ints, allocating, inline, jit, shared
+from pin_metaik.kinematics.kernel.descent import step_in
 from pin_metaik.kinematics.kernel.forward import IDENTITY, copy, forward, sizes_of, unpack
-from pin_metaik.kinematics.kernel.goals import evaluate, have_balls, pose_error
+from pin_metaik.kinematics.kernel.goals import evaluate_apart, have_balls, pose_error
 from pin_metaik.kinematics.kernel.layout import (
     AXIS,
     COLUMN,
@@ -33,6 +33,8 @@ from pin_metaik.kinematics.kernel.layout import (
     Bounds,
 )
 from pin_metaik.kinematics.kernel.scratch import Scratch, scratch_for
+
+step = shared(step_in)  # a tick has four of them
 
 # What was measured on ur5, a circle through its wrist's singularity in 4 s, and on panda at the edge of its reach: with
 # ten times this floor the circle is missed by three times as much, with a tenth accelerations are a third higher. With
@@ -353,7 +355,7 @@ def aim_in(
     if near.rows.shape[0] > 0:
         spread(block, x, near, work)
     led(before, goals, rows, work)
-    square, _ = evaluate(chain.arm, goals, rows, x, descent, have_balls(goals))
+    square, _ = evaluate_apart(chain.arm, goals, rows, x, descent, have_balls(goals))
     for a in range(m):
         work.error[a] = descent.r[a]
     left = lost(bounds, x, m, out[STOPPED], work)
@@ -438,7 +440,7 @@ def head(block: Floats, way: Floats, x: Floats, v: Floats, motion: Floats, dt: f
 def missed(block: Floats, goals: Floats, rows: Ints, x: Floats, sizes: Floats, work: TickScratch) -> bool:
     """Errors at x (n,), of the worst tip over the axes that count, into ``sizes``: m, rad; and whether all are met."""
     chain, descent = unpack(block), work.descent
-    _, met = evaluate(chain.arm, goals, rows, x, descent, have_balls(goals))
+    _, met = evaluate_apart(chain.arm, goals, rows, x, descent, have_balls(goals))
     sizes[0] = sizes[1] = 0.0
     for t in range(goals.shape[0]):
         ends, goal = chain.arm.ends, goals[t]

@@ -12,24 +12,29 @@ import pytest
 from pin_metaik.cache_folder import cache_folder
 from pin_metaik.compiled import baseline, sources
 
-# Two loops in one file with a part from another, quick to compile; what they return, and how many were compiled.
+# Two loops in one file with parts from another, one of them with machine code of its own, quick to compile; what the
+# loops return, and how many of the three were compiled.
 KERNELS = {
     "parts.py": """
-from pin_metaik.compiled import inline
+from pin_metaik.compiled import inline, separate
 
 @inline
 def twice(x: float) -> float:
     return 2.0 * x
+
+@separate
+def added(s: float, x: float) -> float:
+    return s + twice(x)
 """,
     "loops.py": """
 from pin_metaik.compiled import Floats, jit
-from pin_metaik.toy.parts import twice
+from pin_metaik.toy.parts import added, twice
 
 @jit("f8(f8[::1])")
 def total(x: Floats) -> float:
     s = 0.0
     for i in range(x.shape[0]):
-        s += twice(x[i])
+        s = added(s, x[i])
     return s
 
 @jit("f8(f8)")
@@ -40,17 +45,18 @@ def fourfold(x: float) -> float:
 PART, CHANGED = "2.0 * x", "3.0 * x"
 ASK = """
 import numpy as np
-from pin_metaik.toy import loops
-compiled = [loop.compiled() for loop in (loops.total, loops.fourfold)]
-print(loops.total(np.ones(3)), loops.fourfold(1.0), sum(sum(loop.stats.cache_misses.values()) for loop in compiled))
+from pin_metaik.toy import loops, parts
+compiled = loops.total.compiled(), loops.fourfold.compiled(), parts.added
+print(loops.total(np.ones(3)), loops.fourfold(1.0), sum(sum(each.stats.cache_misses.values()) for each in compiled))
 """
 RIGHT, OTHER = (6.0, 4.0), (9.0, 9.0)
 SHIP = """
-from pin_metaik.compiled import LOOPS
+from pin_metaik.compiled import LOOPS, ahead
 from pin_metaik.toy import loops
 for loop in LOOPS.values():
     loop.compiled()
-    loop.machine_code.ship()
+for code in ahead.machine_code():
+    code.ship()
 """
 KEPT = """
 import pickle
@@ -79,7 +85,7 @@ def bare(folder: Path) -> Path:
 def copied(tmp_path: Path) -> Path:
     """The same, with the machine code of these kernels beside them."""
     folder = bare(tmp_path / "copy")
-    assert ask(folder) == (RIGHT, 2)
+    assert ask(folder) == (RIGHT, 3)
     return folder
 
 
@@ -92,7 +98,7 @@ def change(folder: Path) -> None:
 
 
 def ask(folder: Path, **environment: str) -> tuple[tuple[float, float], int]:
-    """What the loops return and how many were compiled, when the package is that in ``folder``."""
+    """What the loops return and how many of the three were compiled, when the package is that in ``folder``."""
     given = {**os.environ, "PYTHONPATH": str(folder), **environment}
     if not environment:
         given.pop("NUMBA_CACHE_DIR", None)
@@ -105,7 +111,7 @@ def ask(folder: Path, **environment: str) -> tuple[tuple[float, float], int]:
 def test_a_change_of_a_part_is_seen_by_every_loop_that_has_it(copied: Path) -> None:
     assert ask(copied) == (RIGHT, 0)
     change(copied)
-    assert ask(copied) == (OTHER, 2)
+    assert ask(copied) == (OTHER, 3)
 
 
 def test_machine_code_that_lies_beside_the_package_is_used_where_nothing_can_be_written(copied: Path) -> None:
@@ -117,7 +123,7 @@ def test_machine_code_that_lies_beside_the_package_is_used_where_nothing_can_be_
 def test_without_any_folder_to_keep_it_in_everything_is_compiled(tmp_path: Path) -> None:
     bare(tmp_path)
     (tmp_path / "pin_metaik" / "toy" / "__pycache__").touch()  # a file where the folder would be
-    assert ask(tmp_path, **NOWHERE) == (RIGHT, 2)
+    assert ask(tmp_path, **NOWHERE) == (RIGHT, 3)
 
 
 def test_machine_code_that_a_wheel_carries_is_used_until_a_source_changes(tmp_path: Path) -> None:
@@ -131,7 +137,7 @@ def test_machine_code_that_a_wheel_carries_is_used_until_a_source_changes(tmp_pa
     shutil.copytree(built / "pin_metaik", site / "pin_metaik", ignore=shutil.ignore_patterns("__pycache__"))
     assert ask(site, **NOWHERE) == (RIGHT, 0)
     change(site)
-    assert ask(site, **NOWHERE) == (OTHER, 2)
+    assert ask(site, **NOWHERE) == (OTHER, 3)
 
 
 def test_of_a_loop_there_is_kept_its_machine_code_and_nothing_for_others_to_link(copied: Path) -> None:
@@ -152,8 +158,16 @@ def test_two_processes_that_start_at_once_compile_each_loop_once(tmp_path: Path)
     with ThreadPoolExecutor(2) as threads:
         answers = list(threads.map(lambda _: ask(tmp_path), range(2)))
     assert [answer for answer, _ in answers] == [RIGHT, RIGHT]
-    assert sum(compiled for _, compiled in answers) == 2
+    assert sum(compiled for _, compiled in answers) == 3
     assert not list(tmp_path.rglob("*.lock"))
+
+
+def test_a_part_that_is_gone_is_compiled_again_and_not_the_loop_that_calls_it(copied: Path) -> None:
+    files = list(copied.rglob("parts.added.separate-*"))
+    for file in files:
+        file.unlink()
+    assert ask(copied) == (RIGHT, 1)
+    assert sorted(copied.rglob("parts.added.separate-*")) == sorted(files)
 
 
 def test_machine_code_that_was_cut_off_is_compiled_again(copied: Path) -> None:
@@ -161,7 +175,7 @@ def test_machine_code_that_was_cut_off_is_compiled_again(copied: Path) -> None:
         file.write_bytes(file.read_bytes()[:100])
     for file in copied.rglob("*fourfold*.nbi"):
         file.write_bytes(b"")
-    assert ask(copied) == (RIGHT, 2)
+    assert ask(copied) == (RIGHT, 3)
     assert ask(copied) == (RIGHT, 0)
 
 

@@ -1,6 +1,7 @@
 """Parts of loops have no machine code of their own."""
 
 from importlib import import_module
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from pin_metaik.kinematics.kernel import forward
 
 
 def test_of_a_part_there_is_its_code_for_llvm_and_nothing_that_python_could_call() -> None:
-    part = forward.copy
+    part: Any = forward.copy
     part.compile("void(f8[::1], f8[::1])")
     for code in part.overloads.values():
         assert {function.name for function in code.library.get_defined_functions()} == {code.fndesc.llvm_func_name}

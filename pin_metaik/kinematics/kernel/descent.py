@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, inline, shared
+from pin_metaik.compiled import Floats, Ints, inline, separate
 from pin_metaik.kinematics.kernel.forward import copy
 from pin_metaik.kinematics.kernel.goals import evaluate, evaluate_pose, have_balls
 from pin_metaik.kinematics.kernel.layout import DAMPING, EVALUATIONS, PER_START, PROGRESS, Arm, Bounds
@@ -64,8 +64,7 @@ def solve_symmetric(H: Floats, y: Floats, m: int) -> None:
             y[i] -= H[k, i] * y[k]
 
 
-@inline
-def step(bounds: Bounds, m: int, damping: float, work: Scratch) -> None:
+def step_in(bounds: Bounds, m: int, damping: float, work: Scratch) -> None:
     """Move ``work.x`` by dx = -J' (J J' + damping I)^-1 r over the joints that their limits leave free.
 
     Joints at a limit and pushed outward stay; those that dx would take across a limit go onto it, and the step is
@@ -114,7 +113,10 @@ def step(bounds: Bounds, m: int, damping: float, work: Scratch) -> None:
         x[c] = min(max(x[c] + dx[c], lower[c]), upper[c])
 
 
-@shared
+step = inline(step_in)
+
+
+@separate
 def descend_from(
     arm: Arm,
     goals: Floats,

@@ -6,19 +6,22 @@ call from Python (1-3 us) is then paid once.
 
 from __future__ import annotations
 
-import numpy as np
+from typing import Any
 
-from pin_metaik.compiled import Floats, Ints, Singles, exact, inline, jit, shared
+import numpy as np
+from numpy.typing import NDArray
+
+from pin_metaik.compiled import Floats, Ints, exact, inline, jit, separate
 from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE, SHIFT, chain_in, sizes_in
 
 FULL_TURN = 2.0 * np.pi
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
 
-sizes_of, unpack = inline(sizes_in), shared(chain_in)
+sizes_of, unpack = inline(sizes_in), separate(chain_in)
 
 
 @inline
-def copy(source: Floats | Singles, target: Floats) -> None:
+def copy(source: NDArray[Any], target: NDArray[Any]) -> None:
     """Copy (n,) numbers; an assignment of slices compiles for two seconds longer, for the message it might raise."""
     for i in range(target.shape[0]):
         target[i] = source[i]

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, exact, inline, jit
+from pin_metaik.compiled import Floats, Ints, exact, inline, jit, separate
 from pin_metaik.kinematics.kernel.forward import copy, forward, sizes_of, unpack
 from pin_metaik.kinematics.kernel.layout import (
     ALIGNED,
@@ -192,13 +192,15 @@ def evaluate_balls(arm: Arm, goals: Floats, rows: Ints, x: Floats, work: Scratch
     return evaluate_with(arm, goals, rows, x, work, True)
 
 
-@inline
-def evaluate(arm: Arm, goals: Floats, rows: Ints, x: Floats, work: Scratch, balls: bool) -> tuple[float, bool]:
+def evaluate_in(arm: Arm, goals: Floats, rows: Ints, x: Floats, work: Scratch, balls: bool) -> tuple[float, bool]:
     """Residual r (m,) and Jacobian by coordinate J (n, m) of several tips, or of one with free axes, slack or balls.
 
     Returns |r|^2 and whether every tip is in tolerance.
     """
     return evaluate_balls(arm, goals, rows, x, work) if balls else evaluate_with(arm, goals, rows, x, work, False)
+
+
+evaluate, evaluate_apart = inline(evaluate_in), separate(evaluate_in)
 
 
 @inline
@@ -256,7 +258,7 @@ def linearize_in(
     block: Floats, goals: Floats, rows: Ints, x: Floats, r: Floats, J: Floats, work: Scratch
 ) -> tuple[float, bool]:
     """``linearize`` in room that was made for it."""
-    square, met = evaluate(unpack(block).arm, goals, rows, x, work, have_balls(goals))
+    square, met = evaluate_apart(unpack(block).arm, goals, rows, x, work, have_balls(goals))
     copy(work.r, r)
     for c in range(x.shape[0]):
         copy(work.J[c], J[c])

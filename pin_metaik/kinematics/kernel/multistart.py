@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, inline, jit, shared
+from pin_metaik.compiled import Floats, Ints, inline, jit, separate
 from pin_metaik.kinematics.kernel.descent import Descent, descend_from, descent_of
 from pin_metaik.kinematics.kernel.forward import FULL_TURN, copy, nearest_turn, sizes_of, unpack
 from pin_metaik.kinematics.kernel.layout import Arm, Bounds, Samples
@@ -31,7 +31,7 @@ def unwind(x: Floats, x0: Floats, bounds: Bounds) -> None:
             x[c] = min(max(nearest_turn(x[c], x0[c], lower[c], upper[c]), lower[c]), upper[c])
 
 
-@shared
+@separate
 def search(
     arm: Arm,
     goals: Floats,

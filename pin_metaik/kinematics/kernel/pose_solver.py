@@ -61,7 +61,7 @@ NOWHERE = ORIGIN, (0.0, 0.0, 0.0, 1.0)
 POSITION = np.array([[0, 0], [0, 1], [0, 2]])  # the rows that count where orientation is free
 
 views, shapes = inline(pose_scratch_in), inline(pose_scratch_shapes)
-unpack = inline(chain_in)  # not the shared one: a closed form would take 3 % longer
+unpack = inline(chain_in)  # not the separate one: a closed form would take 3 % longer
 
 
 @allocating

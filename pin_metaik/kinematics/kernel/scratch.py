@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, Singles, allocating
+from pin_metaik.compiled import Floats, Ints, Singles, separate_allocating
 from pin_metaik.kinematics.kernel.layout import LEAF
 
 OPENED, TRIED = 4, 8  # leaves of the table of samples that are opened, entries that are tried
@@ -46,7 +46,7 @@ class Scratch(NamedTuple):
     held: Floats
 
 
-@allocating
+@separate_allocating
 def scratch_for(n: int, rows: Ints | None, S: int) -> Scratch:
     """One allocation for all starts; ``rows`` None: for the whole pose of one tip."""
     m = 6 if rows is None else rows.shape[0]
@@ -82,7 +82,7 @@ class LookupScratch(NamedTuple):
     scores: Floats
 
 
-@allocating
+@separate_allocating
 def lookup_scratch(n: int, T: int) -> LookupScratch:
     """For one look-up after the other."""
     return LookupScratch(

@@ -18,7 +18,7 @@ import math
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, Singles, inline, jit, shared
+from pin_metaik.compiled import Floats, Ints, Singles, inline, jit, separate
 from pin_metaik.kinematics.kernel.descent import solve_symmetric
 from pin_metaik.kinematics.kernel.forward import IDENTITY, copy, forward, sizes_of, unpack
 from pin_metaik.kinematics.kernel.goals import evaluate_pose, pose_error
@@ -35,7 +35,7 @@ from pin_metaik.kinematics.kernel.layout import (
 )
 from pin_metaik.kinematics.kernel.scratch import OPENED, TRIED, LookupScratch, Scratch, lookup_scratch, scratch_for
 
-samples_of = shared(samples_in)
+samples_of = separate(samples_in)
 
 GAIN_DAMPING = 1e-3  # m^2 or rad^2
 LENGTH = 0.1  # what a radian of the step counts against one that the limits do not allow

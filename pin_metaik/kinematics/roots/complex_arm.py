@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pin_metaik.compiled import Floats, Ints, allocating, inline, jit, shared
-from pin_metaik.kinematics.kernel.forward import FULL_TURN
+from pin_metaik.kinematics.kernel.forward import FULL_TURN, copy
 from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE, SHIFT
 
 Complexes = NDArray[np.complex128]
@@ -268,4 +268,4 @@ def complex_pose(joints: Floats, wiring: Ints, tip: Floats, periodic: Ints, x: C
     """Pose (12,) of the tip at coordinates x (6,)."""
     work = complex_scratch()
     place(ComplexArm(joints, wiring, tip, periodic), x, work)
-    out[:] = work.pose
+    copy(work.pose, out)

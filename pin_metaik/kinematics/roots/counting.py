@@ -18,6 +18,7 @@ import math
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit, shared
+from pin_metaik.kinematics.kernel.forward import copy
 from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE, SHIFT
 from pin_metaik.kinematics.roots.complex_arm import (
     SAME,
@@ -134,5 +135,5 @@ def count_simple(arm: ComplexArm, target: Complexes, points: Complexes, A: Compl
 def simple_roots(joints: Floats, wiring: Ints, tip: Floats, periodic: Ints, target: Floats, points: Complexes) -> int:
     """How many of the points (k, 6) are proved to be simple roots for a pose (12,), no two of them the same."""
     pose, A = np.empty(12, np.complex128), np.empty((6, 12), np.complex128)
-    pose[:] = target
+    copy(target, pose)
     return count_simple(ComplexArm(joints, wiring, tip, periodic), pose, points, A, complex_scratch())

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, allocating, inline, jit, shared
+from pin_metaik.kinematics.kernel.forward import copy
 from pin_metaik.kinematics.roots.complex_arm import (
     ARRIVED,
     SAME,
@@ -59,7 +60,7 @@ class Roots(NamedTuple):
 def roots_of(target: Floats, points: Complexes, nearly: Complexes) -> Roots:
     """For a pose (12,), in arrays that are given."""
     pose = np.empty(12, np.complex128)
-    pose[:] = target
+    copy(target, pose)
     return Roots(pose, points, nearly, np.empty(6, np.complex128), np.empty(6, np.complex128))
 
 
@@ -192,7 +193,8 @@ def find_roots(
         if found >= degree:
             return found, near, spent
     for w in range(starts.shape[0]):
-        ends[:] = known[w]
+        for k in range(arrived.shape[0]):
+            copy(known[w, k], ends[k])
         found, near, more = by_paths(arm, starts[w], ends, arrived, roots, found, near, path, most - spent, work)
         spent += more
         if found >= degree:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, allocating, inline, jit, shared
+from pin_metaik.compiled import Floats, Ints, allocating, inline, jit, separate, shared
 from pin_metaik.kinematics.kernel.forward import FULL_TURN, copy, sizes_of, unpack
 from pin_metaik.kinematics.kernel.goals import evaluate, evaluate_pose
 from pin_metaik.kinematics.kernel.layout import Arm, Bounds
@@ -117,7 +117,7 @@ def correction(
     return True
 
 
-@shared
+@separate
 def put_on_curve(
     arm: Arm,
     goals: Floats,

@@ -129,9 +129,13 @@ def overlap_costs(
                         share = side_of[k] / (side_of[k] - side_of[q])
                         ax, ay = vertices[k, 0] - x1, vertices[k, 1] - y1
                         bx, by = vertices[q, 0] - x1, vertices[q, 1] - y1
-                        crossings[count] = ux * (ax + share * (bx - ax)) + uy * (ay + share * (by - ay))
+                        along = ux * (ax + share * (bx - ax)) + uy * (ay + share * (by - ay))
+                        at = count
+                        while at > 0 and crossings[at - 1] > along:
+                            crossings[at] = crossings[at - 1]
+                            at -= 1
+                        crossings[at] = along
                         count += 1
-                crossings[:count].sort()
                 for c in range(0, count - 1, 2):
                     inside = min(crossings[c + 1], L) - max(crossings[c], 0.0)
                     if inside > 0.0:

@@ -218,7 +218,8 @@ def follow(start: Complexes, end: Complexes, steady: float, points: Complexes, t
         t, h = 0.0, 0.01
         states[k] = STALLED
         for _ in range(STEPS):
-            patch[:] = u
+            for c in range(8):
+                patch[c] = u[c]
             h = min(h, LONGEST, 1.0 - t)
             good = tangent(start, rates, t, u, patch, legs, J, slopes[0])
             for stage in range(1, 4):
@@ -233,7 +234,8 @@ def follow(start: Complexes, end: Complexes, steady: float, points: Complexes, t
                 good = correct(legs, patch, trial, J, step, steady)
             if good:
                 t = 1.0 if h >= 1.0 - t else t + h
-                u[:] = trial
+                for c in range(8):
+                    u[c] = trial[c]
                 normalize(u)
                 h *= 1.5
                 if t == 1.0:

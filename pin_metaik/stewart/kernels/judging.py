@@ -20,7 +20,7 @@ import math
 
 import numpy as np
 
-from pin_metaik.compiled import Floats, Ints, inline, jit, shared
+from pin_metaik.compiled import Floats, Ints, inline, jit, separate, shared
 from pin_metaik.stewart.kernels.closing import close
 
 SINGULAR = 1e-9
@@ -130,7 +130,7 @@ def spectral(J: Floats, diagonal: Floats, W: Floats) -> float:
     return math.sqrt(least / most) if most > 0.0 else 0.0
 
 
-@shared
+@separate
 def measure(
     legs: Floats, divisors: Floats, turned: Floats, scale: float, norm: int, work: Floats
 ) -> tuple[float, float]:
