@@ -14,7 +14,7 @@ import pytest
 from apart import address_space, room
 from fuzz import elsewhere, fuzz
 from fuzz_readers import readers
-from fuzz_seeds import DAE, MESHES, MESHES_MJCF, MJCF, OBJ, PLY, URDF
+from fuzz_seeds import DAE, MESHES, MESHES_MJCF, MJCF, OBJ, PLY, URDF, images
 
 import pin_metaik as mik
 from pin_metaik import collision, learn, mobile
@@ -314,6 +314,14 @@ def test_a_damaged_map_in_parquet_is_refused(tmp_path: Path) -> None:
         (tmp_path / "m.parquet").write_bytes(content)
         with pytest.raises(InvalidSetting, match=r"m\.parquet is not a map"):
             mik.Reachability.load(tmp_path / "m.parquet")
+
+
+def test_an_image_whose_pixels_are_beyond_all_files_is_refused(tmp_path: Path) -> None:
+    whole = images()[4]
+    place = whole.index((273).to_bytes(2, "little") + b"\4\0")  # where its pixels are, in four bytes
+    (tmp_path / "m.tif").write_bytes(whole[: place + 2] + b"\x10" + whole[place + 3 :])  # in eight
+    with pytest.raises(InvalidGeometry, match="cannot be read as an image"):
+        read_image(tmp_path / "m.tif")
 
 
 def test_a_grid_beyond_all_numbers_is_refused(tmp_path: Path) -> None:
