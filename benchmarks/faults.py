@@ -1,6 +1,6 @@
 """Work that is killed, has no room, meets itself, or loses its workers: nothing is lost, nothing is there twice.
 
-    python benchmarks/faults.py [--kills 50] [--full 10] [--twice 10] [--workers 5] [--only NAME] [--out PAGE]
+    python benchmarks/faults.py [--kills 50] [--full 10] [--twice 10] [--workers 5] [--only FAULT] [--work NAME]
 
 * kills: ``kill -9`` at a random moment of a comparison, a map of reach, a design, and a paper's experiment; then the
   same again, killed again every other time, until it is done. What there is then equals what an uninterrupted run has,
@@ -23,7 +23,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from io import StringIO
@@ -187,9 +187,9 @@ def whole(work: Work, folder: Path) -> tuple[Any, float]:
     return work.result(again), time.perf_counter() - began
 
 
-def kills(count: int, rnd: Random) -> Iterator[Count]:
+def kills(count: int, rnd: Random, works: Iterable[Work] = WORKS) -> Iterator[Count]:
     """Kill works at random moments."""
-    for work in WORKS:
+    for work in works:
         done = Count(f"`kill -9` of a {work.name}")
         with folders() as new:
             expected, seconds = whole(work, new())
@@ -354,10 +354,12 @@ def main() -> None:
         parser.add_argument(f"--{name}", type=int, default=count)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--only", default="", help="faults whose name holds this")
+    parser.add_argument("--work", default="", help="kill only works whose name holds this")
     parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".md"))
     given = parser.parse_args()
     counts: list[Count] = []
-    for name, fault in track(FAULTS.items(), "faults", transient=True):
+    killed = partial(kills, works=[work for work in WORKS if given.work in work.name])
+    for name, fault in track((FAULTS | {"kills": killed}).items(), "faults", transient=True):
         if given.only in name and getattr(given, name):
             for one in fault(getattr(given, name), Random(given.seed)):
                 counts.append(one)
