@@ -223,7 +223,7 @@ def page(counts: dict[str, Counts], by: dict[str, str]) -> Iterator[str]:
     for name in counts:
         read_by.setdefault(by[name], []).append(name)
     usual = max(read_by, key=lambda digest: len(read_by[digest]))
-    other = "".join(f"; {digest}: {', '.join(names)}" for digest, names in read_by.items() if digest != usual)
+    other = "".join(f"; {digest}: *{'*, *'.join(names)}*" for digest, names in read_by.items() if digest != usual)
     yield f"Digests of the sources: {usual}{other}."
 
 
