@@ -1,9 +1,10 @@
 """Work that is killed, has no room, meets itself, or loses its workers: nothing is lost, nothing is there twice.
 
-    python benchmarks/faults.py [--kills 50] [--full 10] [--twice 10] [--workers 5] [--only NAME] [--out PAGE]
+    python benchmarks/faults.py [--kills 50] [--full 10] [--twice 10] [--workers 5] [--only FAULT] [--work NAME]
 
-* kills: ``kill -9`` at a random moment of a comparison, a map of reach, and a design; then the same again, killed
-  again every other time, until it is done. What there is then equals what an uninterrupted run has, to the last bit.
+* kills: ``kill -9`` at a random moment of a comparison, a map of reach, a design, and a paper's experiment; then the
+  same again, killed again every other time, until it is done. What there is then equals what an uninterrupted run has,
+  to the last bit. Designs and papers begin again; of the others what was done is not done again.
 * full: a disk that is full after a random number of bytes (``RLIMIT_FSIZE``): an error of ours, and later the rest.
 * twice: two processes begin the same comparison in one folder at once: one works, the other is refused by name.
 * workers: a worker of a Dask cluster is killed in the middle of a comparison.
@@ -14,6 +15,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import csv
 import os
 import resource
 import signal
@@ -21,23 +23,28 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
+from io import StringIO
 from pathlib import Path
 from random import Random
 from typing import Any
 
 import numpy as np
+import typer
 from rich.progress import track
 from sections import conditions
 
 import pin_metaik as mik
 from pin_metaik import stewart
+from pin_metaik.cli.reproduce import reproduce
 from pin_metaik.compare import Suite, compare
 from pin_metaik.compare.folder.store import ROWS, read_rows
 
 SUITE = Suite(("ur5",), ("random", "singular"), ("lm", "mtde@60+dls"), tasks=4, seeds=2, budget=200)
 KILLED, REFUSED = 9, 7  # how children end
+TIMES = {"CPU ms", "CPU s ours", "seconds"}  # headings of what is not the same when it is done again
 YEAR = 365 * 86_400.0  # s
 
 
@@ -115,10 +122,26 @@ def design_of(folder: Path) -> bytes:
     return (folder / "found.toml").read_bytes()
 
 
+def reproduced(folder: Path) -> None:
+    """A paper's experiment, into a page and tables."""
+    with contextlib.suppress(typer.Exit), contextlib.redirect_stdout(StringIO()):
+        reproduce("puma_offset", runs=1, quick=True, out=folder, figures=False)
+
+
+def tables_of(folder: Path) -> tuple[bool, list[str], list[list[dict[str, str]]]]:
+    """Whether its page is of all jobs, the files that are there, and its tables without the times that runs took."""
+    files = sorted(folder.iterdir())
+    page = (folder / "puma_offset.md").read_text(encoding="utf-8")
+    tables = [list(csv.DictReader(path.open(encoding="utf-8"))) for path in files if path.suffix == ".csv"]
+    untimed = [[{key: row[key] for key in row.keys() - TIMES} for row in rows] for rows in tables]
+    return "All 8 jobs done" in page, [path.name for path in files], untimed
+
+
 WORKS = (
     Work("comparison", compared, rows),
     Work("map of reach", mapped, map_of),
     Work("design", designed, design_of),
+    Work("paper's experiment", reproduced, tables_of),
 )
 
 
@@ -164,9 +187,9 @@ def whole(work: Work, folder: Path) -> tuple[Any, float]:
     return work.result(again), time.perf_counter() - began
 
 
-def kills(count: int, rnd: Random) -> Iterator[Count]:
+def kills(count: int, rnd: Random, works: Iterable[Work] = WORKS) -> Iterator[Count]:
     """Kill works at random moments."""
-    for work in WORKS:
+    for work in works:
         done = Count(f"`kill -9` of a {work.name}")
         with folders() as new:
             expected, seconds = whole(work, new())
@@ -279,19 +302,19 @@ def workers(count: int, rnd: Random) -> Iterator[Count]:
         for _ in range(count):
             folder = new()
             with cluster() as (address, processes):
-                child = begun(lambda folder, at=address: compare(SUITE, folder, backend="dask", scheduler=at), folder)
+                child = begun(partial(compare, SUITE, backend="dask", scheduler=address), folder)
                 _await_rows(folder, rnd.randint(1, 6))
                 processes[rnd.choice((1, 2))].kill()
                 gone.times += 1
                 gone.wrong += ended(child) != 0 or rows(folder) != expected
         folder = new()
         with cluster() as (address, processes):
-            child = begun(lambda folder: compare(SUITE, folder, backend="dask", scheduler=address), folder)
+            child = begun(partial(compare, SUITE, backend="dask", scheduler=address), folder)
             _await_rows(folder, 2)
             processes[0].kill()
             lost.said += ended(child) == REFUSED
         with cluster() as (address, processes):
-            child = begun(lambda folder: compare(SUITE, folder, backend="dask", scheduler=address), folder)
+            child = begun(partial(compare, SUITE, backend="dask", scheduler=address), folder)
             lost.times += 1
             lost.wrong += ended(child) != 0 or rows(folder) != expected or lost.said != 1
     yield gone
@@ -331,10 +354,12 @@ def main() -> None:
         parser.add_argument(f"--{name}", type=int, default=count)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--only", default="", help="faults whose name holds this")
+    parser.add_argument("--work", default="", help="kill only works whose name holds this")
     parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".md"))
     given = parser.parse_args()
     counts: list[Count] = []
-    for name, fault in track(FAULTS.items(), "faults", transient=True):
+    killed = partial(kills, works=[work for work in WORKS if given.work in work.name])
+    for name, fault in track((FAULTS | {"kills": killed}).items(), "faults", transient=True):
         if given.only in name and getattr(given, name):
             for one in fault(getattr(given, name), Random(given.seed)):
                 counts.append(one)

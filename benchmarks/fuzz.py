@@ -1,13 +1,14 @@
 """Odd files, and odd command lines, for everything that reads: a result or an error of ours, and nothing else.
 
-    python benchmarks/fuzz.py [--inputs 100000] [--slow 10000] [--seed 0] [--minutes M] [--only NAME] [--kept FILE]
+    python benchmarks/fuzz.py [--inputs 100000] [--slow 10000] [--seed 0] [--minutes M] [--only NAME ...] [--kept FILE]
 
 Good files are changed as trees and as bytes (see fuzz_inputs.py), and read in processes that can die, thousands in one
 of them. A fault is an exception outside the family of ``MetaIKError``, the end of the process, a call that takes longer
 than 5 s, and memory above 1 GiB beyond what the process has when it begins.
 
-All readers go on together, part by part. With ``--kept`` each part is written to a file when it is done, and not done
-again while the sources are the same; with ``--minutes`` no part begins later, and the page says what was done by then.
+All readers go on together, part by part, in as many processes as ``--workers``. With ``--kept`` each part is written to
+a file when it is done, and not done again while the sources are the same; with ``--earlier`` readers that these sources
+have not read count as earlier ones read them, and the page says which. With ``--minutes`` no part begins later.
 """
 
 from __future__ import annotations
@@ -23,7 +24,9 @@ import traceback
 import warnings
 from collections import Counter
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass, field
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -132,32 +135,72 @@ def _place(error: BaseException) -> str:
     return f"{Path(last.filename).name}:{last.lineno}"
 
 
-def all_counted(asked: dict[str, int], seed: int, minutes: float, kept: Path | None) -> dict[str, Counts]:
-    """Counts of each reader; parts that a file has already are not read again."""
-    of, ends, every = sources(), time.monotonic() + 60.0 * minutes, readers()
-    lines = kept.read_text(encoding="utf-8").splitlines() if kept is not None and kept.exists() else []
-    known = {tuple(part): Counts(**counts) for by, part, counts in map(json.loads, lines) if by == of}
+Part = tuple[str, int, int]
+"""A reader's name, the number of its first input, and how many."""
+
+
+@dataclass
+class Kept:
+    """Parts that are done, in a file or in memory only: a line a part, with a digest of the sources that read it.
+
+    Attributes:
+        file: The file.
+        earlier: Whether parts that other sources read count, if these have not read any of the same reader.
+        parts: What came of each part.
+        by: Digest of the sources, of each reader.
+    """
+
+    file: Path | None
+    earlier: bool = False
+    parts: dict[Part, Counts] = field(default_factory=dict)
+    by: dict[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.sources = sources(*sorted(Path(__file__).parent.glob("fuzz_*.py")))
+        text = self.file.read_text(encoding="utf-8") if self.file is not None and self.file.exists() else ""
+        lines = [(by, tuple(part), Counts(**counts)) for by, part, counts in map(json.loads, text.splitlines())]
+        now = {name for by, (name, *_), _ in lines if by == self.sources}
+        self.by = {name: by for by, (name, *_), _ in lines if by == self.sources or (self.earlier and name not in now)}
+        self.parts = {part: counts for by, part, counts in lines if self.by.get(part[0]) == by}
+
+    def add(self, part: Part, counts: Counts) -> None:
+        """Keep what came of a part that was read now."""
+        self.parts[part], self.by[part[0]] = counts, self.sources
+        if self.file is not None:
+            with self.file.open("a", encoding="utf-8") as file:
+                file.write(json.dumps([self.sources, part, asdict(counts)]) + "\n")
+
+
+def all_counted(asked: dict[str, int], seed: int, minutes: float, workers: int, kept: Kept) -> dict[str, Counts]:
+    """Counts of each reader; parts that are kept are not read again."""
+    ends = time.monotonic() + 60.0 * minutes
+    readers()  # makes good files once, for all workers
     parts = [
         (name, seed + first, min(SHARE, count - first))
         for name, count in asked.items()
         for first in range(0, count, SHARE)
     ]
+    waiting = sorted((part for part in parts if part not in kept.parts), key=lambda part: part[1])
+    with ProcessPoolExecutor(workers, get_context("fork")) as pool:
+        futures = [pool.submit(_part, part, ends) for part in waiting]
+        for future in track(as_completed(futures), "parts", len(futures), transient=True):
+            part, counts = future.result()
+            if counts is not None:
+                print(f"{part}: {counts}", flush=True)
+                kept.add(part, counts)
     total = {name: Counts() for name in asked}
-    for part in track(sorted(parts, key=lambda part: part[1]), "parts", transient=True):
-        name, first, count = part
-        if part not in known:
-            if time.monotonic() > ends:
-                continue
-            known[part] = fuzz(every[name], range(first, first + count))
-            print(f"{part}: {known[part]}", flush=True)
-            if kept is not None:
-                with kept.open("a", encoding="utf-8") as file:
-                    file.write(json.dumps([of, part, asdict(known[part])]) + "\n")
-        total[name] += known[part]
+    for part in parts:
+        total[part[0]] += kept.parts.get(part, Counts())
     return {name: counts for name, counts in total.items() if counts.inputs}
 
 
-def page(counts: dict[str, Counts]) -> Iterator[str]:
+def _part(part: Part, ends: float) -> tuple[Part, Counts | None]:
+    """What comes of a part, in a worker; None: it would begin too late, after ``ends`` by the monotonic clock."""
+    name, first, count = part
+    return part, None if time.monotonic() > ends else fuzz(readers()[name], range(first, first + count))
+
+
+def page(counts: dict[str, Counts], by: dict[str, str]) -> Iterator[str]:
     """The page, paragraph by paragraph."""
     yield "# Odd files and command lines"
     yield conditions()
@@ -176,6 +219,12 @@ def page(counts: dict[str, Counts]) -> Iterator[str]:
     said = [f"- {name}: {count} x `{what}`" for name, c in counts.items() for what, count in c.faults.items()]
     if said:
         yield "\n".join(said)
+    read_by: dict[str, list[str]] = {}
+    for name in counts:
+        read_by.setdefault(by[name], []).append(name)
+    usual = max(read_by, key=lambda digest: len(read_by[digest]))
+    other = "".join(f"; {digest}: *{'*, *'.join(names)}*" for digest, names in read_by.items() if digest != usual)
+    yield f"Digests of the sources: {usual}{other}."
 
 
 def main() -> None:
@@ -185,17 +234,21 @@ def main() -> None:
     parser.add_argument("--slow", type=int, default=10_000, help="of each other one")
     parser.add_argument("--seed", type=int, default=0, help="number of the first input")
     parser.add_argument("--minutes", type=float, default=math.inf, help="by the clock, after which no part begins")
-    parser.add_argument("--only", default="", help="readers whose name holds this")
+    parser.add_argument("--only", nargs="+", default=[""], help="readers whose name holds one of these")
+    parser.add_argument("--workers", type=int, default=2, help="processes that read at once")
     parser.add_argument("--kept", type=Path, help="file that finished parts are kept in")
+    parser.add_argument("--earlier", action="store_true", help="count readers as other sources read them, if need be")
     parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".md"))
     given = parser.parse_args()
-    out, kept = given.out.absolute(), given.kept and given.kept.absolute()
+    out, kept = given.out.absolute(), Kept(given.kept and given.kept.absolute(), given.earlier)
     with elsewhere():
         asked = {
-            name: given.inputs if one.fast else given.slow for name, one in readers().items() if given.only in name
+            name: given.inputs if one.fast else given.slow
+            for name, one in readers().items()
+            if any(some in name for some in given.only)
         }
-        counts = all_counted(asked, given.seed, given.minutes, kept)
-    out.write_text("\n\n".join(page(counts)) + "\n", encoding="utf-8")
+        counts = all_counted(asked, given.seed, given.minutes, given.workers, kept)
+    out.write_text("\n\n".join(page(counts, kept.by)) + "\n", encoding="utf-8")
 
 
 @contextlib.contextmanager

@@ -8,6 +8,7 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from random import Random
 
@@ -86,8 +87,14 @@ class Reader:
         if self.syntax is None or rnd.random() < 0.4:
             return odd_bytes(self.seeds, rnd)
         parse, write = self.syntax
-        text = write(odd_tree(parse(rnd.choice(self.seeds)), rnd)).encode("utf-8", "surrogatepass")
+        text = write(odd_tree(_parsed(parse, rnd.choice(self.seeds)), rnd)).encode("utf-8", "surrogatepass")
         return odd_bytes([text], rnd) if rnd.random() < 0.2 else text
+
+
+@cache
+def _parsed(parse: Callable[[bytes], Tree], seed: bytes) -> Tree:
+    """The tree of a seed, which ``odd_tree`` takes a copy of."""
+    return parse(seed)
 
 
 def with_comparison(folder: Path) -> None:
@@ -200,6 +207,7 @@ def read_run(path: Path) -> None:
     Record.from_text(path.read_bytes(), path.name)
 
 
+@cache
 def readers() -> dict[str, Reader]:
     """All readers by name. In a folder that may be written into."""
     tables = good("robots/catalog/rv7fl.toml", "robots/catalog/puma560.toml", "robots/catalog/cobra600.toml")

@@ -187,9 +187,10 @@ def part(of: str, kind: str, seed: int, count: int) -> tuple[str, str, int, int,
     return of, kind, seed, count, KINDS[kind].work(seed, count)
 
 
-def sources() -> str:
+def sources(*more: Path) -> str:
     """A digest of the sources, the package's and of what asks it: what was counted holds for these."""
-    files = [*sorted(Path(mik.__file__).parent.rglob("*.py")), Path(__file__), Path(__file__).with_name("feasible.py")]
+    asking = (Path(__file__), Path(__file__).with_name("feasible.py"), *more)
+    files = [*sorted(Path(mik.__file__).parent.rglob("*.py")), *asking]
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:16]
 
 

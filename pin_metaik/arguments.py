@@ -29,6 +29,7 @@ Door = TypeVar("Door", bound=Callable[..., Any])
 Read = Callable[[Any], Any]
 
 LONGEST = 60  # characters of a value in a message
+EXACT = 2**53  # whole numbers up to it are floats, too; with much larger ones NumPy would make arrays of objects
 COUNTS = ("no", "one", "two", "three", "four", "five", "six")
 
 MAKING = {  # what to write where one of these is asked for
@@ -266,9 +267,10 @@ def _number(value: Any) -> float:
     if isinstance(value, (bool, np.bool_)) or not (isinstance(value, Real) or _scalar(value)):
         raise _Unlike
     try:
-        return value if type(value) in (int, float) and math.isfinite(float(value)) else float(value)
+        real = float(value)
     except (OverflowError, TypeError, ValueError):
         raise _Unlike from None
+    return value if type(value) is int and abs(value) <= EXACT else real
 
 
 def _scalar(value: Any) -> bool:

@@ -153,7 +153,10 @@ def read_arrays(path: Path, error: Error, kind: str) -> dict[str, np.ndarray]:
                 if sum(member.file_size for member in archive.infolist()) > HEAVIEST:
                     raise error(f"{path} is not {kind}: unpacked it has more than {HEAVIEST >> 20:,} MiB")
             with np.load(file, allow_pickle=False) as opened:
-                return {name: opened[name] for name in opened.files}
+                arrays = {name: opened[name] for name in opened.files}
+            if others := [name for name, one in arrays.items() if not isinstance(one, np.ndarray)]:
+                raise error(f"{path} is not {kind}: {others[0]!r} is no array")
+            return arrays
         return {"": np.load(file, allow_pickle=False)}
     except MetaIKError:
         raise

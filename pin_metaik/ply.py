@@ -1,11 +1,13 @@
 """Meshes in PLY (Turk, 1994), text or binary. coal's reader trusts the numbers of corners, and so ends the process.
 
 A header names elements and their properties; a row an element follows, in text a line. A property is a number, or a
-list: its length and so many numbers.
+list: its length and so many numbers. What this reader would understand in another way than coal's is refused:
+characters that only one of them takes for the end of a line, spellings that only one of them takes for a number.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice, repeat
@@ -24,7 +26,9 @@ FORMS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 SUFFIX = ".ply"
 MAGIC = b"ply"
 CORNERS = ("vertex_indices", "vertex_index")
-END = b"end_header"
+HEADER = re.compile(rb"ply[\t -~\x80-\xff\r\n]*?[\r\n]end_header\r?\n")
+ROWS = re.compile(rb"[0-9.eE+\-naifNAIF\t\r\n ]*")
+WHOLE = re.compile(rb"-?[0-9]+")
 
 Numbers = NDArray[np.float64]
 Take = Callable[[str, int], Numbers]
@@ -88,13 +92,12 @@ def read_ply(path: Path, error: Error) -> tuple[Numbers, NDArray[np.int64]]:
 
 def _header(content: bytes) -> tuple[str, list[Element], int]:
     """The form, the elements, and where their rows begin."""
-    end = content.find(END)
-    start = content.find(b"\n", end) + 1
-    if not content.startswith(MAGIC) or end < 0 or start == 0:
+    header = HEADER.match(content)
+    if header is None:
         raise ValueError("its header is not whole")
     form, elements = "", list[Element]()
-    for line in content[:end].decode("latin-1").splitlines():
-        match line.split():
+    for line in header[0].splitlines():
+        match line.decode("latin-1").split():
             case ["format", one, _]:
                 form = one
             case ["element", name, count]:
@@ -103,9 +106,13 @@ def _header(content: bytes) -> tuple[str, list[Element], int]:
                 _add(elements, Property(name, TYPES[kind], TYPES[length]))
             case ["property", kind, name] if elements:
                 _add(elements, Property(name, TYPES[kind]))
+            case [("ply" | "comment" | "obj_info" | "end_header"), *_] | []:
+                pass
+            case words:
+                raise ValueError(f"its header has a line {' '.join(words)!r}")
     if any(element.count < 0 or (element.count and not element.properties) for element in elements):
         raise ValueError("an element has no properties, or a negative number of rows")
-    return form, elements, start
+    return form, elements, header.end()
 
 
 def _add(elements: list[Element], one: Property) -> None:
@@ -116,13 +123,18 @@ def _add(elements: list[Element], one: Property) -> None:
 
 def _text(content: bytes) -> Iterator[Take]:
     """What takes numbers from each line of a text."""
+    if not ROWS.fullmatch(content):
+        raise ValueError("its rows have something else than numbers")
     for line in content.splitlines():
-        words, at = np.array(line.split(), dtype=float), 0
+        words, at = line.split(), 0
+        numbers = np.array(words, dtype=float)
 
-        def take(_: str, count: int, words: Numbers = words) -> Numbers:
+        def take(kind: str, count: int, words: list[bytes] = words, numbers: Numbers = numbers) -> Numbers:
             nonlocal at
             at += _fits(count, len(words) - at)
-            return np.asarray(words[at - count : at])
+            if kind[0] in "iu" and not all(map(WHOLE.fullmatch, words[at - count : at])):
+                raise ValueError("a whole number is not written as one")
+            return np.asarray(numbers[at - count : at])
 
         yield take
         if at != len(words):

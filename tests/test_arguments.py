@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from inspect import signature
 from pathlib import Path
 from typing import Any, Literal, TypeVar
@@ -44,6 +45,7 @@ def door(
         ({"count": np.int64(3)}, 3),
         ({"share": np.array(0.5)}, 0.5),
         ({"share": 2}, 2),
+        ({"share": 2**53}, 2**53),
         ({"size": [1, 2, 3]}, (1, 2, 3)),
         ({"size": np.array([1.0, 2.0, 3.0])}, (1.0, 2.0, 3.0)),
         ({"names": (name for name in "ab")}, ("a", "b")),
@@ -58,6 +60,11 @@ def door(
 def test_what_is_as_good_as_what_is_annotated_is_taken(given: dict[str, Any], read: object) -> None:
     (name,) = given
     assert door(**given)[name] == read
+
+
+def test_a_number_is_never_one_that_makes_an_array_of_objects() -> None:
+    for value in (10**30, -(2**64), Fraction(1, 3), 2**53):
+        assert np.array([0.5, door(share=value)["share"]]).dtype == float
 
 
 @pytest.mark.parametrize(

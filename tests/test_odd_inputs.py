@@ -14,7 +14,7 @@ import pytest
 from apart import address_space, room
 from fuzz import elsewhere, fuzz
 from fuzz_readers import readers
-from fuzz_seeds import DAE, MESHES, MESHES_MJCF, MJCF, OBJ, PLY, URDF
+from fuzz_seeds import DAE, MESHES, MESHES_MJCF, MJCF, OBJ, PLY, URDF, images
 
 import pin_metaik as mik
 from pin_metaik import collision, learn, mobile
@@ -24,6 +24,7 @@ from pin_metaik.collision.scene import read_points
 from pin_metaik.compare import read_results
 from pin_metaik.compare.folder.manifest import Manifest
 from pin_metaik.compare.folder.store import ROWS, Appender, read_rows
+from pin_metaik.compare.trials.lookup import method_of
 from pin_metaik.errors import (
     MOST,
     InvalidGeometry,
@@ -34,7 +35,7 @@ from pin_metaik.errors import (
     MetaIKError,
 )
 from pin_metaik.gui.look.pieces import pieces_of
-from pin_metaik.mobile.motion.trajectory import load_trajectory
+from pin_metaik.mobile.motion.trajectory import Phase, Trajectory, load_trajectory
 from pin_metaik.mobile.world.images import read_image
 from pin_metaik.stewart import read_trajectory
 from tests.compare.suites import SMALL
@@ -143,6 +144,38 @@ def test_a_mesh_in_ply_is_read_as_its_like_in_obj_and_wrong_corners_do_not_end_t
     (tmp_path / "r.urdf").write_bytes(URDF.replace(b"m.obj", b"m.ply"))
     with pytest.raises(InvalidModel, match="indices outside its 4 vertices"):
         _ = mik.load_robot(tmp_path / "r.urdf").visual_model
+
+
+@pytest.mark.parametrize(
+    ("good", "odd", "says"),
+    [
+        (
+            b"0 0 0\n1",
+            b"0\x0c0 0\n1",
+            "something else than numbers",
+        ),  # where coal's reader ends a line
+        (b"0 0 0\n1", b"0\x000 0\n1", "something else than numbers"),
+        (b"end_header\n", b"end_header\x00\n", "header is not whole"),
+        (b"end_header\n", b"comment end_header\n", "header is not whole"),
+        (b"float x\n", b"float x\x0b\n", "header is not whole"),
+        (b"float x\n", b"float x y\n", "header has a line 'property float x y'"),
+        (b"3 1 2 3", b"3e0 1 2 3", "a whole number is not written as one"),
+        (b"3 1 2 3", b"3 1 2 0_3", "something else than numbers"),
+    ],
+)
+def test_what_coals_reader_understands_in_another_way_is_no_ply(
+    good: bytes, odd: bytes, says: str, tmp_path: Path
+) -> None:
+    (tmp_path / "m.ply").write_bytes(PLY.replace(good, odd))
+    with pytest.raises(InvalidGeometry, match=says):
+        collision.Mesh.read(tmp_path / "m.ply")
+
+
+def test_an_archive_of_arrays_holds_nothing_else(tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "map.npz", "w") as archive:
+        archive.writestr("status.npy", b"\0")
+    with pytest.raises(InvalidSetting, match="'status' is no array"):
+        mik.Reachability.load(tmp_path / "map.npz")
 
 
 def test_mjcf_names_no_mesh_that_would_end_the_process(tmp_path: Path) -> None:
@@ -259,6 +292,20 @@ def test_a_phase_lasts_no_less_than_nothing(tmp_path: Path) -> None:
         load_trajectory(tmp_path / "t.json")
 
 
+def test_motions_are_of_floats_whatever_they_are_written_as(tmp_path: Path) -> None:
+    (tmp_path / "t.json").write_text(f'{{"start": [0, 0, 0], "v": {10**30}, "phases": [[{2**70}, 0, 0, 0]]}}')
+    motion = load_trajectory(tmp_path / "t.json")
+    assert motion.end == pytest.approx((2**70 * 1e30, 0.0, 0.0))
+    whole = Trajectory([Phase(2**70, 0, 0, 1)], (0, 0, 0), 10**30)
+    assert whole.at([0.0, 1.0]).table.dtype == whole.moved(np.zeros(1), np.ones(1)).travel.dtype == float
+
+
+@pytest.mark.parametrize("name", [":sphere", ".a:b", "a..b:c", "\ud800:c"])
+def test_what_is_no_name_of_a_module_is_refused(name: str) -> None:
+    with pytest.raises(InvalidSetting, match="is not the name of a module"):
+        method_of(name)
+
+
 def test_a_damaged_map_in_parquet_is_refused(tmp_path: Path) -> None:
     robot = mik.load_robot("asr_twodof")
     mik.reachability(mik.Chain(robot, robot.frame), np.array([[0.1, 0.1, 0.1]])).save(tmp_path / "m.parquet")
@@ -267,6 +314,14 @@ def test_a_damaged_map_in_parquet_is_refused(tmp_path: Path) -> None:
         (tmp_path / "m.parquet").write_bytes(content)
         with pytest.raises(InvalidSetting, match=r"m\.parquet is not a map"):
             mik.Reachability.load(tmp_path / "m.parquet")
+
+
+def test_an_image_whose_pixels_are_beyond_all_files_is_refused(tmp_path: Path) -> None:
+    whole = images()[4]
+    place = whole.index((273).to_bytes(2, "little") + b"\4\0")  # where its pixels are, in four bytes
+    (tmp_path / "m.tif").write_bytes(whole[: place + 2] + b"\x10" + whole[place + 3 :])  # in eight
+    with pytest.raises(InvalidGeometry, match="cannot be read as an image"):
+        read_image(tmp_path / "m.tif")
 
 
 def test_a_grid_beyond_all_numbers_is_refused(tmp_path: Path) -> None:

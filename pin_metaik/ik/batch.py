@@ -197,6 +197,7 @@ def _parts(chain: Chain, bases: NDArray[np.float64], workers: int) -> list[Rows]
     if not chain.held or (bases == bases[0])[:, chain.held].all():
         return [*slices(len(bases), workers)]
     _, group = np.unique(bases[:, chain.held], axis=0, return_inverse=True)
+    group = group.ravel()  # which NumPy 2.0.0 gives as a column
     order, sizes = np.argsort(group, kind="stable"), np.bincount(group)
     groups = np.split(order, np.cumsum(sizes)[:-1])
     return [rows[part] for rows in groups for part in slices(len(rows), workers)]

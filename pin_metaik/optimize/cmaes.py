@@ -74,7 +74,8 @@ class CMAES:
                 X = np.tile(start, (len(Y), 1))
                 X[:, free] = space.lower[free] + np.array(Y)[:, : len(free)] * space.width[free]
                 costs = yield space.clip(X)
-                strategy.tell(Y, costs.tolist())
-                converged = bool(strategy.stop())
+                with np.errstate(over="ignore", invalid="ignore"):  # cma 4.0 counts with infinite costs and steps
+                    strategy.tell(Y, costs.tolist())
+                    converged = bool(strategy.stop())
             agents = round(agents * self.growth)
             start = space.sample(rng, 1)[0]

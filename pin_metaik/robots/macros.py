@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from importlib.util import find_spec
 from pathlib import Path
+from xml.dom.minidom import Document
 
 from pin_metaik.errors import InvalidModel
 from pin_metaik.lookup import need
@@ -13,6 +15,7 @@ from pin_metaik.robots.prints import caught_prints
 from pin_metaik.robots.text import outermost, parsed
 
 _CARRY_NUMBERS = ("link", "joint", "origin", "axis", "limit", "parent", "child", "mimic")
+_QUOTES_CLOSED = re.compile(r"""(?:'[^'\n]*'|"[^"\n]*"|[^'"])*+""")
 
 
 def sign_of_xacro(tree: ET.Element) -> str:
@@ -61,11 +64,23 @@ def expanded(text: str, source: Path | None, what: str, arguments: Mapping[str, 
         with caught_prints():
             xacro.init_stacks(path)
             document = xacro.parse(text)
+            _check_parameters(document)
             xacro.process_doc(document, mappings={name: _word(value) for name, value in arguments.items()})
     except Exception as error:  # the expressions of the file are evaluated, and may raise anything
         why = " ".join(str(error).split()) or type(error).__name__
         raise InvalidModel(f"{what} is xacro that cannot be expanded: {why}") from None
     return str(document.toxml())
+
+
+def _check_parameters(document: Document) -> None:
+    """Refuse what xacro would never come back from: its search for a default's end is exponential after an open quote.
+
+    Raises:
+        ValueError: The parameters of a macro have a quote that is not closed.
+    """
+    for macro in document.getElementsByTagName("xacro:macro"):
+        if not _QUOTES_CLOSED.fullmatch(macro.getAttribute("params")):
+            raise ValueError(f"the parameters of macro '{macro.getAttribute('name')}' have a quote that is not closed")
 
 
 def _word(value: object) -> str:

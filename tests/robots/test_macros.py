@@ -2,6 +2,7 @@
 
 from math import pi
 from pathlib import Path
+from xml.sax.saxutils import escape
 
 import pytest
 
@@ -67,6 +68,25 @@ def test_text_may_be_xacro_too_and_what_is_wrong_with_it_is_told(arm: Path) -> N
         Description(ARM, None).model()
     with pytest.raises(InvalidTable, match="ur5 has no parameters: only DH tables and xacro files have"):
         load_robot("ur5", parameters={"length": 0.7})
+
+
+@pytest.mark.parametrize("parameters", ["a:=" + "9" * 5000 + "'", "a b:='it\"", "a:=\"x' b"])
+def test_a_quote_that_is_not_closed_does_not_keep_xacro_searching_for_ever(parameters: str) -> None:
+    text = LINK.replace('"parent child length"', f'"{escape(parameters, {chr(34): "&quot;"})}"')
+    with pytest.raises(InvalidModel, match="the parameters of macro 'limb' have a quote that is not closed"):
+        load_robot(text)
+
+
+def test_quotes_in_parameters_that_are_closed_are_taken(arm: Path) -> None:
+    quoted = """parent child length offset:='0 0' note:="it's" """
+    (arm.parent / "parts" / "limb.xacro").write_text(
+        LINK.replace('"parent child length"', f'"{quoted.replace(chr(34), "&quot;")}"')
+    )
+    assert load_robot(arm).model.nq == 2
+    whole = ARM.replace('<xacro:include filename="parts/limb.xacro"/>', LINK[LINK.index("<xacro:macro") : -8])
+    whole = whole.replace('<xacro:include filename="$(find arm_description)/urdf/parts/more.xacro"/>', "")
+    text = whole.replace('"parent child length"', f'"{quoted.replace(chr(34), "&quot;")}"')
+    assert load_robot(text).model.nq == 2
 
 
 def test_without_the_package_the_extra_is_named(arm: Path, monkeypatch: pytest.MonkeyPatch) -> None:

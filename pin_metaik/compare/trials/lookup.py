@@ -52,6 +52,8 @@ def imported(kind: str, spec: str) -> object:
         UnknownName: Nothing of that name is in it.
     """
     module, _, name = spec.partition(":")
+    if not all(part.isidentifier() for part in module.split(".")):
+        raise InvalidSetting(f"cannot import the module of {kind} {spec!r}: {module!r} is not the name of a module")
     try:
         found = importlib.import_module(module)
     except ImportError as error:

@@ -142,11 +142,12 @@ class Trajectory:
         self.phases = tuple(phases)
         self.start = start
         self.v = v
-        self._begins = np.cumsum([0.0, *(phase.duration for phase in phases)])
+        self._rows = rows
+        self._begins = np.cumsum([0.0, *rows[:, 0]])
         self.duration = float(self._begins[-1])
         states = [np.array([*start, v])]  # x, y, heading, v at the beginning of each phase
-        for phase in self.phases:
-            states.append(np.concatenate(_moved(states[-1][None], np.array([phase]), phase.duration)))
+        for row in rows:
+            states.append(np.concatenate(_moved(states[-1][None], row[None], row[0])))
         self._states = np.array(states)
 
     @property
@@ -178,7 +179,7 @@ class Trajectory:
         b = array("b", b, len(a))
         middle, half = (a + b) / 2, (b - a) / 2
         k = np.clip(np.searchsorted(self._begins, middle, side="right") - 1, 0, max(len(self.phases) - 1, 0))
-        _, acceleration, alpha, _ = np.array(self.phases or [(0.0, 0.0, 0.0, 0.0)])[k].T
+        _, acceleration, alpha, _ = (self._rows if self.phases else np.zeros((1, 4)))[k].T
         at = self.at(middle)
         fastest, turning = np.abs(at.v) + np.abs(acceleration) * half, np.abs(at.omega) + np.abs(alpha) * half
         return Moved(fastest * half, turning * half)
@@ -196,7 +197,7 @@ class Trajectory:
             x, y, heading = (np.full(times.shape, s) for s in self.start)
             return Samples(times, x, y, heading, np.full(times.shape, self.v), *np.zeros((3, len(times))))
         k = np.clip(np.searchsorted(self._begins, times, side="right") - 1, 0, len(self.phases) - 1)
-        phases = np.array(self.phases)[k]
+        phases = self._rows[k]
         within = np.minimum(times - self._begins[k], phases[:, 0])
         x, y, heading, v = _moved(self._states[k], phases, within)
         omega = phases[:, 3] + phases[:, 2] * within
