@@ -132,7 +132,8 @@ def tables_of(folder: Path) -> tuple[bool, list[str], list[list[dict[str, str]]]
     """Whether its page is of all jobs, the files that are there, and its tables without the times that runs took."""
     files = sorted(folder.iterdir())
     page = (folder / "puma_offset.md").read_text(encoding="utf-8")
-    tables = [list(csv.DictReader(path.open(encoding="utf-8"))) for path in files if path.suffix == ".csv"]
+    texts = [path.read_text(encoding="utf-8") for path in files if path.suffix == ".csv"]
+    tables = [list(csv.DictReader(text.splitlines())) for text in texts]
     untimed = [[{key: row[key] for key in row.keys() - TIMES} for row in rows] for rows in tables]
     return "All 8 jobs done" in page, [path.name for path in files], untimed
 
