@@ -1,4 +1,4 @@
-"""One arm's closed form as a file of C or Python: its numbers, the functions of the kernels, and what calls them."""
+"""One arm's inverse kinematics as C or Python: its numbers, the functions of the kernels, and what calls them."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
 from pin_metaik.errors import CannotExport
 from pin_metaik.export.drivers import PYTHON, C
+from pin_metaik.export.tables import Table, as_declared
 from pin_metaik.export.to_c import Translation
 from pin_metaik.export.to_python import python_of
 from pin_metaik.kinematics import Chain
@@ -22,6 +24,7 @@ ACROSS = ("ACROSS", "ACROSS_WORLD")
 ENTRIES = ("LEVEL", "SIDE_2", "SIDE_3")
 FAR = 1e9  # rad: where a joint without limits ends
 EXACT = 1e-6  # m and rad: how far an arm may be from its closed form, as nothing descends in exported code
+BRANCHES = 8  # configurations at most by a closed form
 
 
 @checked
@@ -34,23 +37,16 @@ def exported(chain: Chain, language: str = "c") -> str:
     by whole turns nearest to a guess.
 
     Args:
-        chain: An arm with a closed form.
+        chain: An arm with a closed form or, for C, any arm of six joints.
         language: ``"c"`` or ``"python"``.
 
     Raises:
-        CannotExport: The arm has no closed form, or only nearly (a calibrated arm); or there is no such language.
+        CannotExport: The chain has not six joints; it has no closed form, or only nearly (a calibrated arm), and the
+            language is Python; or there is no such language.
     """
     if language not in LANGUAGES:
         raise CannotExport(f"there is no export to {language!r}; known: {', '.join(LANGUAGES)}")
-    proof = chain.form_proof
-    off = np.inf if proof is None else float(max(proof.deviation)) - layout.ROUNDING
-    if proof is None or off > EXACT:
-        raise CannotExport(
-            f"{chain.model.name!r} has no closed form to write: six turning joints, axes 2 and 3 parallel, axes 5 "
-            "and 6 meeting, and axis 4 either through that point, too, or parallel to axes 2 and 3, have one, as ur5, "
-            "puma560, rv7fl, z1 and kinova do"
-        )
-    return LANGUAGES[language](chain, _numbers(chain))
+    return LANGUAGES[language](chain)
 
 
 @checked
@@ -66,8 +62,14 @@ def write_export(chain: Chain, path: Path) -> None:
     writable(path).write_text(exported(chain, SUFFIXES[path.suffix]), encoding="utf-8")
 
 
+def _has_form(chain: Chain) -> bool:
+    """Whether the arm is exactly one with a closed form."""
+    proof = chain.form_proof
+    return proof is not None and float(max(proof.deviation)) - layout.ROUNDING <= EXACT
+
+
 def _numbers(chain: Chain) -> dict[str, Any]:
-    """The value of each expression that names a constant in the kernels."""
+    """The value of each expression that names a constant in the closed form."""
     from pin_metaik.export.sources import CONSTANTS
 
     form = chain.form
@@ -87,28 +89,62 @@ def _columns(chain: Chain) -> list[int]:
     return [int(column) for column in chain.paths.wiring[:, layout.COLUMN]]
 
 
-def _as_c(chain: Chain, numbers: dict[str, Any]) -> str:
-    from pin_metaik.export.sources import FUNCTIONS, parsed
+def _by_form(chain: Chain) -> tuple[Callable[..., int], dict[str, NDArray[Any]], int]:
+    """What computes configurations by the closed form, its arguments, and how many there are at most."""
+    from pin_metaik.export.solutions import by_branches
 
-    program, limits = Translation(numbers), _limits(chain)
-    for function in FUNCTIONS:
-        program.add(parsed(function))
+    return by_branches, {"FORM": chain.form, "COLUMNS": np.array(_columns(chain))}, BRANCHES
+
+
+def _by_roots(chain: Chain) -> tuple[Callable[..., int], dict[str, NDArray[Any]], int]:
+    """The same by the roots of six joints."""
+    from pin_metaik.export.solutions import by_roots
+
+    six = chain._six_joints
+    if six is None:
+        raise CannotExport(
+            f"{chain.model.name!r} has no finite set of solutions to write: one frame that six joints move has one, "
+            f"where joints that follow others turn at whole multiples of them; here {chain.n} move {len(chain.frames)}"
+        )
+    joints, wiring, tip, periodic = six.arm
+    arm = {"JOINTS": joints, "WIRING": wiring, "TIP": tip, "PERIODIC": periodic, "LENGTH": np.array(six.length)}
+    known = {"LOOPS": six.loops, "STARTS": six.poses, "KNOWN": six.known, "DEGREE": np.array(six.degree)}
+    return by_roots, {**arm, **known}, six.degree
+
+
+def _as_c(chain: Chain) -> str:
+    from pin_metaik.export.solutions import CALLED_WITH, CONSTANT
+
+    function, arguments, bound = (_by_form if _has_form(chain) else _by_roots)(chain)
+    limits = _limits(chain)
+    arguments["LOWER"] = np.array([lower for _, lower, _ in limits])
+    arguments["UPPER"] = np.array([upper for _, _, upper in limits])
+    arguments["ROTATES"] = chain.limits.rotates.astype(np.int64)
+    arguments["MULTI_TURN"] = chain.limits.multi_turn.astype(np.int64)
+    tables = [Table(name, values) for name, values in arguments.items()]
+    program = Translation(CONSTANT)
+    name, _, _ = program.call(function, [*(table.kind for table in tables), *CALLED_WITH])
     return C.substitute(
         name=chain.model.name,
         joints=", ".join(name for name, _, _ in limits),
-        lower=", ".join(repr(lower) for _, lower, _ in limits),
-        upper=", ".join(repr(upper) for _, _, upper in limits),
-        columns=", ".join(map(str, _columns(chain))),
-        outside=repr(numbers["OUTSIDE"]),
-        structures="\n".join(program.structures.values()),
-        functions="\n\n".join(program.code),
+        program=program.text,
+        tables="\n".join(as_declared(table) for table in tables),
+        bound=bound,
+        function=name,
+        arguments=", ".join(arguments),
     )
 
 
-def _as_python(chain: Chain, numbers: dict[str, Any]) -> str:
+def _as_python(chain: Chain) -> str:
     from pin_metaik.export.sources import FUNCTIONS, parsed
 
-    limits = _limits(chain)
+    if not _has_form(chain):
+        raise CannotExport(
+            f"{chain.model.name!r} has no closed form to write in Python: six turning joints, axes 2 and 3 parallel, "
+            "axes 5 and 6 meeting, and axis 4 either through that point, too, or parallel to axes 2 and 3, have one, "
+            "as ur5, puma560, rv7fl, z1 and kinova do; any other arm of six joints can be written in C, as .c"
+        )
+    limits, numbers = _limits(chain), _numbers(chain)
     return PYTHON.substitute(
         name=chain.model.name,
         joints=", ".join(name for name, _, _ in limits),
@@ -120,5 +156,5 @@ def _as_python(chain: Chain, numbers: dict[str, Any]) -> str:
     )
 
 
-LANGUAGES: dict[str, Callable[[Chain, dict[str, Any]], str]] = {"c": _as_c, "python": _as_python}
+LANGUAGES: dict[str, Callable[[Chain], str]] = {"c": _as_c, "python": _as_python}
 SUFFIXES = {".c": "c", ".py": "python"}
