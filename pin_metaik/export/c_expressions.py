@@ -8,7 +8,7 @@ import cmath
 import inspect
 import math
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol, cast
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -34,15 +34,13 @@ from pin_metaik.export.c_types import (
     literal,
     wider,
 )
+from pin_metaik.export.parsed import source_of
 
 OPERATORS: dict[type[ast.AST], str] = {
-    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.BitAnd: "&", ast.And: "&&", ast.Or: "||",
+    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.And: "&&", ast.Or: "||",
     ast.Eq: "==", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=",
+    ast.USub: "-", ast.Not: "!",
 }  # fmt: skip
-RANKS: dict[type[ast.AST], int] = {
-    ast.Mult: PRODUCT, ast.Div: PRODUCT, ast.Add: SUM, ast.Sub: SUM, ast.BitAnd: COMPARISON,
-}  # fmt: skip
-SIGNS: dict[type[ast.AST], str] = {ast.USub: "-", ast.UAdd: "+", ast.Not: "!"}
 CALLS: dict[Any, tuple[str, Scalar]] = {
     math.sqrt: ("sqrt", NUMBER), math.exp: ("exp", NUMBER), math.cos: ("cos", NUMBER), math.sin: ("sin", NUMBER),
     math.atan2: ("atan2", NUMBER), math.copysign: ("copysign", NUMBER), math.isfinite: ("isfinite", FLAG),
@@ -109,19 +107,20 @@ class Expressions:
                 parts = [self.value(one) for one in elements]
                 all_known = tuple(one.known for one in parts)
                 return self.group(parts, None if None in all_known else all_known)
-            case ast.Call(func=function, args=arguments):
+            case ast.Call(func=function, args=arguments, keywords=[]):
                 return self._call(function, arguments)
             case ast.UnaryOp(op=op, operand=operand):
                 inner = self.value(operand)
                 if isinstance(op, ast.USub) and inner.known is not None:
                     return literal(-inner.known)
                 kind = FLAG if isinstance(op, ast.Not) else inner.kind
-                return Value(SIGNS[type(op)] + inner.under(ATOM), kind, rank=SIGN)
+                return Value(symbol(op) + inner.under(ATOM), kind, rank=SIGN)
             case ast.BinOp(left=left, op=op, right=right):
                 return self.binary(self.value(left), op, self.value(right))
             case ast.BoolOp(op=op, values=values):
-                texts = [self.value(one).under(SIGN) for one in values]
-                return Value(f" {OPERATORS[type(op)]} ".join(texts), FLAG, rank=COMPARISON)
+                flags = [self.value(one) for one in values]
+                if all(one.kind == FLAG for one in flags):
+                    return Value(f" {symbol(op)} ".join(one.under(SIGN) for one in flags), FLAG, rank=COMPARISON)
             case ast.Compare(left=left, ops=ops, comparators=others):
                 return self._compared([self.value(one) for one in (left, *others)], ops)
             case ast.IfExp(test=test, body=body, orelse=orelse):
@@ -178,20 +177,14 @@ class Expressions:
 
     def _entry(self, whole: Value, index: ast.expr) -> Value:
         """An entry of a tuple or an array, or a row of it, or what a slice leaves of it."""
-        if isinstance(whole.known, tuple):
-            return self._of_known(eval(f"whole[{ast.unparse(index)}]", {"whole": whole.known}))
         if isinstance(whole.kind, Group):
-            at = self.value(index)
-            k = at.known if at.known is not None else 0
-            if at.known is None and not whole.kind.even:
-                raise CannotExport(f"which of {whole.text} {at.text} takes is not known beforehand")
-            return Value(whole.kind.member(whole.text, at.text), whole.kind.kinds[k])
+            return self._one_of(whole, whole.kind, index)
         if not isinstance(whole.kind, Array):
             raise CannotExport(f"no C is known for entries of {whole.text}")
         if isinstance(index, ast.Slice):
             return self._slice(whole, whole.kind, index)
         given = self.value(index)
-        if given.known is not None and isinstance(given.known, tuple):
+        if isinstance(given.known, tuple):
             places = [literal(one) for one in given.known]
         else:
             places = [self.value(one) for one in index.elts] if isinstance(index, ast.Tuple) else [given]
@@ -202,6 +195,20 @@ class Expressions:
         if kind.shape:
             return whole._replace(kind=kind) if offset.known == 0 else self.moved(whole, offset, kind)
         return Value(f"{whole.under(ATOM)}[{offset.text}]", kind.element)
+
+    def _one_of(self, whole: Value, kind: Group, index: ast.expr) -> Value:
+        """A member of a tuple, or some of one that is known."""
+        if isinstance(index, ast.Slice):
+            first, last, step = (None if one is None else self.value(one).known for one in _parts(index))
+            if whole.known is None:
+                raise CannotExport(f"no C is known for a slice of {whole.text}")
+            return self._of_known(whole.known[first:last:step])
+        at = self.value(index)
+        if at.known is None and not kind.even:
+            raise CannotExport(f"which of {whole.text} {at.text} takes is not known beforehand")
+        if at.known is None or whole.known is None:
+            return Value(kind.member(whole.under(ATOM), at.text), kind.kinds[at.known or 0])
+        return self._of_known(whole.known[at.known])
 
     def _slice(self, whole: Value, kind: Array, index: ast.Slice) -> Value:
         first = 0 if index.lower is None else self.value(index.lower).known
@@ -218,32 +225,32 @@ class Expressions:
     def binary(self, a: Value, op: ast.operator, b: Value) -> Value:
         """Two values with an operator between them; as a number, where both are known."""
         if a.known is not None and b.known is not None:
-            symbol = ast.unparse(ast.BinOp(ast.Name("a"), op, ast.Name("b")))
-            return literal(eval(symbol, {"a": a.known, "b": b.known}))
+            text = ast.unparse(ast.BinOp(ast.Name("a"), op, ast.Name("b")))
+            return literal(eval(text, {"a": a.known, "b": b.known}))
         kind = wider(a.kind, b.kind)
         if kind == WHOLE and isinstance(op, ast.Mult | ast.Add):
             neutral = 1 if isinstance(op, ast.Mult) else 0
             if neutral in (a.known, b.known):
                 return b if a.known == neutral else a
         match op:
-            case ast.Mod():
+            case ast.Mod() if kind == WHOLE:
                 return Value(f"modulo({a.text}, {b.text})", WHOLE)
-            case ast.FloorDiv():
+            case ast.FloorDiv() if kind == WHOLE:
                 return Value(f"quotient({a.text}, {b.text})", WHOLE)
-            case ast.Pow():
+            case ast.Pow() if kind == NUMBER:
                 return Value(f"pow({a.text}, {b.text})", NUMBER)
             case ast.Mult() if a.kind == b.kind == COMPLEX:
                 return Value(f"times({a.text}, {b.text})", COMPLEX)
             case ast.Div() if kind == WHOLE:
                 return Value(f"(double){a.under(ATOM)} / {b.under(SIGN)}", NUMBER, rank=PRODUCT)
-        rank = RANKS[type(op)]
-        if rank == COMPARISON:
-            return Value(f"{a.under(SIGN)} {OPERATORS[type(op)]} {b.under(SIGN)}", kind, rank=rank)
-        return Value(f"{a.under(rank)} {OPERATORS[type(op)]} {b.under(rank - 1)}", kind, rank=rank)
+        if isinstance(op, ast.BitAnd):
+            return Value(f"{a.under(SIGN)} & {b.under(SIGN)}", kind, rank=COMPARISON)
+        rank = PRODUCT if isinstance(op, ast.Mult | ast.Div) else SUM
+        return Value(f"{a.under(rank)} {symbol(op)} {b.under(rank - 1)}", kind, rank=rank)
 
     def _compared(self, values: list[Value], ops: list[ast.cmpop]) -> Value:
         pairs = zip(values, ops, values[1:], strict=False)
-        parts = [f"{a.under(SUM)} {OPERATORS[type(op)]} {b.under(SUM)}" for a, op, b in pairs]
+        parts = [f"{a.under(SUM)} {symbol(op)} {b.under(SUM)}" for a, op, b in pairs]
         return Value(" && ".join(parts), FLAG, rank=COMPARISON)
 
     def _call(self, function: ast.expr, arguments: list[ast.expr]) -> Value:
@@ -269,7 +276,7 @@ class Expressions:
         if called in CALLS:
             name, kind = CALLS[called]
             return Value(f"{name}({', '.join(one.text for one in given)})", kind)
-        if isinstance(called, type):
+        if hasattr(called, "_fields"):
             return self._structure(called, given)
         return self._own(called, given)
 
@@ -298,11 +305,15 @@ class Expressions:
             self.written.add(value.kind.origin)
 
 
-def source_of(function: Callable[..., Any]) -> tuple[ast.FunctionDef, dict[str, Any]]:
-    """A function's source, and what names mean around it."""
-    plain = inspect.unwrap(getattr(function, "py_func", function))
-    (tree,) = ast.parse(inspect.getsource(plain)).body
-    return cast(ast.FunctionDef, tree), plain.__globals__
+def symbol(op: ast.AST) -> str:
+    """An operator in C."""
+    if type(op) not in OPERATORS:
+        raise CannotExport(f"no C is known for the operator {type(op).__name__}")
+    return OPERATORS[type(op)]
+
+
+def _parts(index: ast.Slice) -> tuple[ast.expr | None, ast.expr | None, ast.expr | None]:
+    return index.lower, index.upper, index.step
 
 
 def gives_arrays(function: Callable[..., Any]) -> bool:

@@ -7,8 +7,9 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from pin_metaik.errors import CannotExport
-from pin_metaik.export.c_expressions import ELEMENTS, OPERATORS, Expressions, Program, source_of
+from pin_metaik.export.c_expressions import ELEMENTS, Expressions, Program, symbol
 from pin_metaik.export.c_types import ATOM, COMPLEX, NOTHING, WHOLE, Array, Group, Kind, Value, literal
+from pin_metaik.export.parsed import source_of
 
 INDENT = "    "
 
@@ -62,9 +63,9 @@ class Body(Expressions):
                 self._change(target, op, self.value(value))
             case ast.If():
                 self._if(statement)
-            case ast.For(target=ast.Name(id=name), iter=over, body=body):
+            case ast.For(target=ast.Name(id=name), iter=over, body=body, orelse=[]):
                 self._for(name, over, body)
-            case ast.While(test=test, body=body):
+            case ast.While(test=test, body=body, orelse=[]):
                 self._block(f"while ({self.value(test).text}) {{", body)
                 self.write_line("}")
             case ast.Break():
@@ -98,19 +99,19 @@ class Body(Expressions):
             self.result = NOTHING
             self.write_line("return;")
             return
-        value = self.value(node)
         if self.outer is not None:
-            self.given = value
+            self.given = self.value(node)
             return
-        if self.result is None:
-            self.result = value.kind
-        if isinstance(self.result, Group) and isinstance(node, ast.Tuple):
+        if isinstance(node, ast.Tuple):
             parts = [self.value(one) for one in node.elts]
+            self.result = self.result or Group(tuple(one.kind for one in parts))
+            assert isinstance(self.result, Group)
             texts = [self.held(one, kind) for one, kind in zip(parts, self.result.kinds, strict=True)]
-            text = self.filled(self.result, texts)
-        else:
-            text = self.held(value, self.result)
-        self.write_line(f"return {text};")
+            self.write_line(f"return {self.filled(self.result, texts)};")
+            return
+        value = self.value(node)
+        self.result = self.result or value.kind
+        self.write_line(f"return {self.held(value, self.result)};")
 
     def _assign(self, targets: list[ast.expr], node: ast.expr) -> None:
         if isinstance(targets[0], ast.Name) and (kind := self.outside(node)) in ELEMENTS:  # a name for a type
@@ -134,7 +135,8 @@ class Body(Expressions):
             whole = whole if isinstance(node, ast.Name) else self._kept(whole)
             parts = [Value(tuple_kind.member(whole.text, k), kind) for k, kind in enumerate(tuple_kind.kinds)]
         for target, part in zip(names, parts, strict=True):
-            self._set(target, part)
+            if not (isinstance(target, ast.Name) and not self.read.get(target.id)):
+                self._set(target, part)
 
     def _kept(self, value: Value) -> Value:
         """A value in a variable of its own."""
@@ -149,6 +151,7 @@ class Body(Expressions):
             return
         name = target.id
         if not self.read.get(name):
+            self.write_line(f"(void)({value.text});")
             return
         if name in self.names:
             variable = self.names[name]
@@ -168,9 +171,10 @@ class Body(Expressions):
         self._write_to(target)
         if isinstance(place.kind, Array):  # a whole array, entry by entry
             at = self._new("at")
-            source = f"{value.under(ATOM)}[{at}]" if isinstance(value.kind, Array) else value.text
+            if not isinstance(value.kind, Array) or value.kind.shape != place.kind.shape:
+                raise CannotExport(f"{value.text} has not the shape of {place.text}")
             self.write_line(f"for (long {at} = 0; {at} < {place.kind.count}; {at}++) {{")
-            self.write_line(f"{INDENT}{place.under(ATOM)}[{at}] = {source};")
+            self.write_line(f"{INDENT}{place.under(ATOM)}[{at}] = {value.under(ATOM)}[{at}];")
             self.write_line("}")
             return
         self.write_line(f"{place.text} = {self.held(value, place.kind)};")
@@ -183,10 +187,11 @@ class Body(Expressions):
         place = self.value(target)
         if not isinstance(target, ast.Name):
             self._write_to(target)
-        if place.kind == value.kind == COMPLEX and isinstance(op, ast.Mult):
-            self.write_line(f"{place.text} = {self.binary(place, op, value).text};")
-            return
-        self.write_line(f"{place.text} {OPERATORS[type(op)]}= {self.held(value, place.kind)};")
+        changed = self.held(self.binary(place, op, value), place.kind)
+        if isinstance(op, ast.Add | ast.Sub | ast.Div) or (isinstance(op, ast.Mult) and value.kind != COMPLEX):
+            self.write_line(f"{place.text} {symbol(op)}= {value.text};")
+        else:
+            self.write_line(f"{place.text} = {changed};")
 
     def _if(self, statement: ast.If) -> None:
         self._block(f"if ({self.value(statement.test).text}) {{", statement.body)

@@ -76,10 +76,15 @@ def far_from(near: Floats, x: Floats) -> float:
 
 
 def with_solution(wanted: Wanted, x: Floats, solutions: Floats, count: int, most: int) -> int:
-    """How many solutions there are with x (6,), which is added if it is new and there is room, nearest first."""
-    if count == most or not is_new(x, solutions, count, wanted.multi_turn, APART):
+    """How many solutions there are with x (6,), which is added if it is new: the nearest ``most``, nearest first."""
+    if most <= 0 or not is_new(x, solutions, count, wanted.multi_turn, APART):
         return count
-    far, at = far_from(wanted.near, x), count
+    far = far_from(wanted.near, x)
+    if count == most:
+        if far_from(wanted.near, solutions[count - 1]) <= far:
+            return count
+        count -= 1
+    at = count
     while at > 0 and far_from(wanted.near, solutions[at - 1]) > far:
         for c in range(6):
             solutions[at, c] = solutions[at - 1, c]

@@ -14,9 +14,9 @@ from collections.abc import Callable
 from typing import Any
 
 from pin_metaik.errors import CannotExport
-from pin_metaik.export.c_expressions import source_of
 from pin_metaik.export.c_functions import INDENT, Body
 from pin_metaik.export.c_types import FOREVER, NOTHING, Array, Group, Kind, Scalar, Structure, Value
+from pin_metaik.export.parsed import source_of
 
 HELPERS = {  # what C has no operator for, or has it at the price of infinities that do not occur
     "complex_of": """static Complex complex_of(double real, double imag)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pin_metaik.arguments import checked
 from pin_metaik.errors import CannotExport
 from pin_metaik.export.drivers import PYTHON, C
+from pin_metaik.export.parsed import source_of
 from pin_metaik.export.tables import Table, as_declared
 from pin_metaik.export.to_c import Translation
 from pin_metaik.export.to_python import python_of
@@ -136,7 +137,7 @@ def _as_c(chain: Chain) -> str:
 
 
 def _as_python(chain: Chain) -> str:
-    from pin_metaik.export.sources import FUNCTIONS, parsed
+    from pin_metaik.export.sources import FUNCTIONS
 
     if not _has_form(chain):
         raise CannotExport(
@@ -152,7 +153,7 @@ def _as_python(chain: Chain) -> str:
         upper=repr(tuple(upper for _, _, upper in limits)),
         columns=repr(tuple(_columns(chain))),
         outside=repr(numbers["OUTSIDE"]),
-        functions="\n\n\n".join(python_of(parsed(function), numbers) for function in FUNCTIONS),
+        functions="\n\n\n".join(python_of(source_of(function)[0], numbers) for function in FUNCTIONS),
     )
 
 
