@@ -15,11 +15,13 @@ $tables
  *
  * target: the pose of the tip in the world, its rotation row by row, then its position in m.
  * near:   a configuration; of copies by whole turns the nearest to it are written.
- * x:      room for most configurations; there are $bound at most.
+ * x:      room for most configurations; more than $bound have only poses whose configurations are curves.
  */
 int arm_solve(const double target[12], const double near[6], double x[][6], int most)
 {
-    return (int)$function($arguments, target, near, &x[0][0], most);
+    $arm_type arm = {$arm};
+    Wanted wanted = {$limits, near};
+    return (int)$function(arm, wanted, target, &x[0][0], most);
 }
 """)
 

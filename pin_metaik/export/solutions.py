@@ -34,6 +34,44 @@ TOLERANCE = 1e-5  # m and rad from the pose
 APART = 1e-2  # rad or m by which some joint of two solutions differs
 
 
+class FormArm(NamedTuple):
+    """An arm with a closed form.
+
+    Attributes:
+        form: (16, 3) its closed form; see ``kernel.layout``.
+        columns: (6,) the coordinate of each joint, from the base on.
+    """
+
+    form: Floats
+    columns: Ints
+
+
+class RootsArm(NamedTuple):
+    """Six coordinates whose roots are found; see ``SixJoints``.
+
+    Attributes:
+        joints: (S, 14) its arrays as ``ComplexArm`` has them, down to ``periodic`` ...
+        wiring: (S, 2) ...
+        tip: (12,) ...
+        periodic: (6,) ...
+        length: m, the unit of lengths in them.
+        loops: (l,) numbers of the loops that find most of them.
+        starts: (w, 12) poses at which they are known ...
+        known: (w, k, 6) ... and they.
+        degree: How many a pose has.
+    """
+
+    joints: Floats
+    wiring: Ints
+    tip: Floats
+    periodic: Ints
+    length: float
+    loops: Ints
+    starts: Complexes
+    known: Complexes
+    degree: int
+
+
 class Wanted(NamedTuple):
     """Where solutions may be.
 
@@ -52,8 +90,12 @@ class Wanted(NamedTuple):
     near: Floats
 
 
-CONSTANT = ComplexArm, Wanted  # arrays in these are never written
-CALLED_WITH: tuple[Kind, ...] = (Array(NUMBER, (12,)), Array(NUMBER, (6,)), Array(NUMBER, (None, 6)), WHOLE)
+CONSTANT = ComplexArm, FormArm, RootsArm, Wanted  # arrays in these are never written
+CALLED_WITH: tuple[Kind, ...] = (
+    Array(NUMBER, (12,)),
+    Array(NUMBER, (None, 6)),
+    WHOLE,
+)  # after the arm and what is wanted
 
 
 def is_inside(wanted: Wanted, beyond: float, x: Floats) -> bool:
@@ -94,20 +136,9 @@ def with_solution(wanted: Wanted, x: Floats, solutions: Floats, count: int, most
     return count + 1
 
 
-def by_branches(
-    form: Floats,
-    columns: Ints,
-    lower: Floats,
-    upper: Floats,
-    rotates: Ints,
-    multi_turn: Ints,
-    target: Floats,
-    near: Floats,
-    solutions: Floats,
-    most: int,
-) -> int:
+def by_branches(arm: FormArm, wanted: Wanted, target: Floats, solutions: Floats, most: int) -> int:
     """How many solutions (most, 6) a closed form gives for a pose (12,)."""
-    wanted = Wanted(lower, upper, rotates, multi_turn, near)
+    form, columns, near = arm.form, arm.columns, wanted.near
     T, x, count = target, np.empty(6), 0
     pose = T[0], T[1], T[2], T[3], T[4], T[5], T[6], T[7], T[8], T[9], T[10], T[11]
     guess = (
@@ -168,35 +199,18 @@ def is_real_solution(
     return reaches(arm, length, target, z, work)
 
 
-def by_roots(
-    joints: Floats,
-    wiring: Ints,
-    tip: Floats,
-    periodic: Ints,
-    length: float,
-    loops: Ints,
-    starts: Complexes,
-    known: Complexes,
-    degree: int,
-    lower: Floats,
-    upper: Floats,
-    rotates: Ints,
-    multi_turn: Ints,
-    target: Floats,
-    near: Floats,
-    solutions: Floats,
-    most: int,
-) -> int:
+def by_roots(six: RootsArm, wanted: Wanted, target: Floats, solutions: Floats, most: int) -> int:
     """How many solutions (most, 6) the roots of six joints give for a pose (12,)."""
+    joints, wiring, tip, periodic, length = six.joints, six.wiring, six.tip, six.periodic, six.length
     scaled, pose = np.empty(12), np.empty(12, np.complex128)
     for k in range(12):
         scaled[k] = target[k] / length if k > 8 else target[k]
         pose[k] = scaled[k]
     points, nearly = np.empty((MOST, 6), np.complex128), np.empty((MOST, 6), np.complex128)
     found, close, _ = find_roots(
-        joints, wiring, tip, periodic, scaled, loops, starts, known, degree, FOR_ROOTS, points, nearly
+        joints, wiring, tip, periodic, scaled, six.loops, six.starts, six.known, six.degree, FOR_ROOTS, points, nearly
     )
-    arm, wanted = ComplexArm(joints, wiring, tip, periodic), Wanted(lower, upper, rotates, multi_turn, near)
+    arm = ComplexArm(joints, wiring, tip, periodic)
     z, x, work, count = np.empty(6, np.complex128), np.empty(6), complex_scratch(), 0
     for k in range(found):
         if is_real_solution(arm, length, pose, points[k], wanted, z, x, work):

@@ -27,6 +27,11 @@ class Table(NamedTuple):
         return Array(element, self.values.shape) if self.values.ndim else element
 
 
+def tables_of(fields: Any) -> list[Table]:
+    """The fields of a named tuple, by their names in capitals."""
+    return [Table(name.upper(), np.asarray(value)) for name, value in fields._asdict().items()]
+
+
 def as_declared(table: Table) -> str:
     """The definition of a constant, arrays row after row."""
     numbers = [_number(one) for one in np.ravel(table.values).tolist()]

@@ -7,13 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pin_metaik.arguments import checked
 from pin_metaik.errors import CannotExport
 from pin_metaik.export.drivers import PYTHON, C
 from pin_metaik.export.parsed import source_of
-from pin_metaik.export.tables import Table, as_declared
+from pin_metaik.export.tables import as_declared, tables_of
 from pin_metaik.export.to_c import Translation
 from pin_metaik.export.to_python import python_of
 from pin_metaik.kinematics import Chain
@@ -90,16 +89,16 @@ def _columns(chain: Chain) -> list[int]:
     return [int(column) for column in chain.paths.wiring[:, layout.COLUMN]]
 
 
-def _by_form(chain: Chain) -> tuple[Callable[..., int], dict[str, NDArray[Any]], int]:
-    """What computes configurations by the closed form, its arguments, and how many there are at most."""
-    from pin_metaik.export.solutions import by_branches
+def _by_form(chain: Chain) -> tuple[Callable[..., int], tuple[Any, ...], int]:
+    """What computes configurations by the closed form, the arm that it takes, and how many there are at most."""
+    from pin_metaik.export.solutions import FormArm, by_branches
 
-    return by_branches, {"FORM": chain.form, "COLUMNS": np.array(_columns(chain))}, BRANCHES
+    return by_branches, FormArm(chain.form, np.array(_columns(chain))), BRANCHES
 
 
-def _by_roots(chain: Chain) -> tuple[Callable[..., int], dict[str, NDArray[Any]], int]:
+def _by_roots(chain: Chain) -> tuple[Callable[..., int], tuple[Any, ...], int]:
     """The same by the roots of six joints."""
-    from pin_metaik.export.solutions import by_roots
+    from pin_metaik.export.solutions import RootsArm, by_roots
 
     six = chain._six_joints
     if six is None:
@@ -107,32 +106,32 @@ def _by_roots(chain: Chain) -> tuple[Callable[..., int], dict[str, NDArray[Any]]
             f"{chain.model.name!r} has no finite set of solutions to write: one frame that six joints move has one, "
             f"where joints that follow others turn at whole multiples of them; here {chain.n} move {len(chain.frames)}"
         )
-    joints, wiring, tip, periodic = six.arm
-    arm = {"JOINTS": joints, "WIRING": wiring, "TIP": tip, "PERIODIC": periodic, "LENGTH": np.array(six.length)}
-    known = {"LOOPS": six.loops, "STARTS": six.poses, "KNOWN": six.known, "DEGREE": np.array(six.degree)}
-    return by_roots, {**arm, **known}, six.degree
+    return by_roots, RootsArm(*six.arm, six.length, six.loops, six.poses, six.known, six.degree), six.degree
 
 
 def _as_c(chain: Chain) -> str:
-    from pin_metaik.export.solutions import CALLED_WITH, CONSTANT
+    from pin_metaik.export.solutions import CALLED_WITH, CONSTANT, Wanted
 
-    function, arguments, bound = (_by_form if _has_form(chain) else _by_roots)(chain)
+    function, arm, bound = (_by_form if _has_form(chain) else _by_roots)(chain)
     limits = _limits(chain)
-    arguments["LOWER"] = np.array([lower for _, lower, _ in limits])
-    arguments["UPPER"] = np.array([upper for _, _, upper in limits])
-    arguments["ROTATES"] = chain.limits.rotates.astype(np.int64)
-    arguments["MULTI_TURN"] = chain.limits.multi_turn.astype(np.int64)
-    tables = [Table(name, values) for name, values in arguments.items()]
+    lower, upper = (np.array([one[k] for one in limits]) for k in (1, 2))
+    rotates, multi_turn = chain.limits.rotates.astype(np.int64), chain.limits.multi_turn.astype(np.int64)
+    wanted = Wanted(lower, upper, rotates, multi_turn, near=np.empty(6))
+    arm_tables, limit_tables = tables_of(arm), tables_of(wanted)
     program = Translation(CONSTANT)
-    name, _, _ = program.call(function, [*(table.kind for table in tables), *CALLED_WITH])
+    kinds = [program.named(type(one), [table.kind for table in tables_of(one)]) for one in (arm, wanted)]
+    name, _, _ = program.call(function, [*kinds, *CALLED_WITH])
+    limit_tables.pop()  # near, which is given
     return C.substitute(
         name=chain.model.name,
         joints=", ".join(name for name, _, _ in limits),
         program=program.text,
-        tables="\n".join(as_declared(table) for table in tables),
+        tables="\n".join(as_declared(table) for table in (*arm_tables, *limit_tables)),
         bound=bound,
         function=name,
-        arguments=", ".join(arguments),
+        arm_type=type(arm).__name__,
+        arm=", ".join(table.name for table in arm_tables),
+        limits=", ".join(table.name for table in limit_tables),
     )
 
 
