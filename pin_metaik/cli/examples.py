@@ -33,7 +33,7 @@ EXAMPLES = {
     ),
     "place-base": ("pin-metaik place-base ur5 poses.csv --places 2000",),
     "toolbox": ("pin-metaik toolbox", "pin-metaik toolbox --port 0 --no-browser"),
-    "export": ("pin-metaik export ur5 -o ur5.c", "pin-metaik export my_arm.urdf -o my_arm.py"),
+    "export": ("pin-metaik export ur5 -o ur5.py", "pin-metaik export my_arm.urdf -o my_arm.c"),
     "warm": ("pin-metaik warm", "pin-metaik warm --robot panda --robot ur5"),
     "mobile show": ("pin-metaik mobile show ten_obstacles -o scene.png",),
     "mobile compare": ("pin-metaik mobile compare ten_obstacles --runs 20 --out out/planners",),

@@ -1,4 +1,4 @@
-"""``pin-metaik export``: an arm's closed form as a file of C or Python that needs nothing else."""
+"""``pin-metaik export``: an arm's inverse kinematics as a file of C or Python that needs nothing else."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def export(
         ),
     ] = None,
 ) -> None:
-    """Write standalone C or Python that computes all configurations of an arm with a closed form for a pose."""
+    """Write standalone C that computes all configurations of a six-joint arm for a pose; Python with a closed form."""
     loaded = load_robot(robot)
     chain = Chain(loaded.model, loaded.frame if frame is None else frame, locked=split(lock or ()))
     write_export(chain, out)

@@ -1,4 +1,4 @@
-"""An arm's closed-form inverse kinematics as standalone source code, in C or Python."""
+"""An arm's inverse kinematics, all solutions for a pose, as standalone source code in C or Python."""
 
 from pin_metaik.export.write import LANGUAGES, exported, write_export
 

@@ -6,10 +6,8 @@ branch is from the pose, in the same subset of Python.
 
 from __future__ import annotations
 
-import ast
-import inspect
 from collections.abc import Callable
-from typing import Any, cast
+from typing import Any
 
 from pin_metaik.kinematics.kernel import closed_form, forward
 from pin_metaik.kinematics.kernel.closed_form import (
@@ -95,12 +93,3 @@ FUNCTIONS: tuple[Callable[..., Any], ...] = (
 )
 CONSTANTS = {"LOST": closed_form.LOST, "SHORT": closed_form.SHORT, "OUTSIDE": closed_form.OUTSIDE}
 CONSTANTS |= {"FULL_TURN": forward.FULL_TURN}
-
-
-def parsed(function: Callable[..., Any]) -> ast.FunctionDef:
-    """A function's source, without its decorators."""
-    plain = getattr(function, "py_func", function)
-    (tree,) = ast.parse(inspect.getsource(plain)).body
-    tree = cast(ast.FunctionDef, tree)
-    tree.decorator_list = []
-    return tree

@@ -1,210 +1,167 @@
-"""Functions of plain numbers and tuples, in Python, to C.
+"""Functions of the kernels, in Python, to C99.
 
-They have what the closed form of an arm has: tuples of numbers, which become structures of an array; tuples of these
-and flags, which become structures with a member each; assignments, also of several at once; if, return, and
-expressions.
+They are translated as they are called, like numba does: each for the types of its arguments, with the shapes of arrays
+in them, and those that it calls before it. Constants are written as numbers. Arrays that a function makes lie on the
+stack; those of a function that gives a named tuple of new arrays belong to its caller.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Mapping
+import re
+from collections import Counter
+from collections.abc import Callable
 from typing import Any
 
 from pin_metaik.errors import CannotExport
+from pin_metaik.export.c_functions import INDENT, Body
+from pin_metaik.export.c_types import FOREVER, NOTHING, Array, Group, Kind, Scalar, Structure, Value
+from pin_metaik.export.parsed import source_of
 
-NUMBER, FLAG, WHOLE = "double", "int", "long"
-MATH = {"math.sqrt": "sqrt", "math.atan2": "atan2", "math.copysign": "copysign", "min": "fmin", "max": "fmax"}
-MATH |= {"np.round": "nearbyint", "np.ceil": "ceil", "np.floor": "floor", "float": "", "abs": "fabs"}
-OPERATORS: dict[type[ast.AST], str] = {
-    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.BitAnd: "&", ast.USub: "-", ast.And: "&&",
-    ast.Or: "||", ast.Eq: "==", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Not: "!",
-}  # fmt: skip
-NAMES = {"float": NUMBER, "bool": FLAG, "int": WHOLE, "Vector": "T3", "Turn": "T2"}
-LENGTHS = {"pose": "T12", "guess": "T6", "x": "T6"}  # of what is annotated as numbers, by name
+HELPERS = {  # what C has no operator for, or has it at the price of infinities that do not occur
+    "complex_of": """static Complex complex_of(double real, double imag)
+{
+    union { double parts[2]; Complex z; } both = {{real, imag}};
+    return both.z;
+}""",
+    "times": """static Complex times(Complex a, Complex b)
+{
+    double p = creal(a), q = cimag(a), r = creal(b), s = cimag(b);
+    return complex_of(p * r - q * s, p * s + q * r);
+}""",
+    "lesser": """static double lesser(double a, double b)
+{
+    return b < a ? b : a;
+}""",
+    "greater": """static double greater(double a, double b)
+{
+    return b > a ? b : a;
+}""",
+    "modulo": """static long modulo(long a, long b)
+{
+    return (a % b + b) % b;
+}""",
+    "quotient": """static long quotient(long a, long b)
+{
+    return (a - (a % b + b) % b) / b;
+}""",
+}
+COMPLEX_HEADER = """#include <complex.h>
+#undef complex /* names of variables and fields below */
+#undef I
+
+typedef double _Complex Complex;
+"""
 
 
 class Translation:
     """One program, as its functions are translated.
 
     Attributes:
-        numbers: The value of each constant, by the expression that names it, such as ``form[LEVEL]``.
-        returns: The type that each function gives, by name.
+        constant: Named tuples whose arrays are never written.
         structures: The definitions of structures, by name.
-        code: The functions.
+        functions: Name and result of each function, and whether it writes to its arguments, by it and their types.
+        code: The functions, those that are called before those that call them.
     """
 
-    def __init__(self, numbers: Mapping[str, Any]) -> None:
-        self.numbers = numbers
-        self.returns: dict[str, str] = {"cos_sin": "T2", "vector": "T3"}
-        self.structures = {f"T{n}": f"typedef struct {{ double v[{n}]; }} T{n};" for n in (2, 3, 6, 12)}
+    def __init__(self, constant: tuple[type, ...]) -> None:
+        self.constant = constant
+        self.structures: dict[str, str] = {}
+        self.functions: dict[tuple[Callable[..., Any], tuple[Kind, ...]], tuple[str, Kind, list[bool]]] = {}
         self.code: list[str] = []
+        self.named_so: Counter[str] = Counter()
 
-    def add(self, function: ast.FunctionDef) -> None:
-        """Translate a function; those that it calls come before it."""
-        names = [argument.arg for argument in function.args.args]
-        kinds = [self._named(argument.annotation, argument.arg) for argument in function.args.args]
-        known = {name: kind for name, kind in zip(names, kinds, strict=True) if kind}
-        result = self._named(function.returns, "angles" if function.name == "branch" else "")
-        self.returns[function.name] = result
-        body = Body(self, dict(known), result)
-        for statement in function.body[1:]:  # the first is what it is for
-            body.add(statement)
-        given = ", ".join(f"{kind} {name}" for name, kind in known.items())
-        note = f"/* {ast.get_docstring(function)} */"
-        self.code.append("\n".join([note, f"static {result} {function.name}({given})", "{", *body.lines, "}"]))
+    @property
+    def text(self) -> str:
+        """All of it, with what it needs before it."""
+        body = "\n\n".join(self.code)
+        for name, definition in reversed(self.structures.items()):
+            body = f"{definition}\n\n{body}" if re.search(rf"\b{name}\b", body) else body
+        used = {name for name in HELPERS if re.search(rf"\b{name}\(", body)}
+        used |= {"complex_of"} if "times" in used else set()
+        head = ["#include <math.h>", COMPLEX_HEADER] if "Complex" in body else ["#include <math.h>\n"]
+        return "\n".join(head) + "\n" + "\n\n".join([*(HELPERS[name] for name in HELPERS if name in used), body])
 
-    def _named(self, annotation: ast.expr | None, name: str) -> str:
-        """The type of an annotation; none for the closed form, whose numbers are known."""
-        if isinstance(annotation, ast.Subscript):  # tuple[...]
-            assert isinstance(annotation.slice, ast.Tuple)
-            return self.structure([self._named(one, name) for one in annotation.slice.elts])
-        assert isinstance(annotation, ast.Name)
-        if annotation.id == "Floats":
-            return ""
-        return LENGTHS.get(name, "T6") if annotation.id == "Numbers" else NAMES[annotation.id]
-
-    def structure(self, kinds: list[str]) -> str:
-        """The type of a tuple of values of these types."""
-        if all(kind == NUMBER for kind in kinds):
-            return f"T{len(kinds)}"
-        name = "S_" + "_".join(kinds)
-        members = " ".join(f"{kind} m{k};" for k, kind in enumerate(kinds))
-        self.structures[name] = f"typedef struct {{ {members} }} {name};"
+    def structure(self, kind: Kind) -> str:
+        """The name of a type, whose definition is written."""
+        match kind:
+            case Scalar(name=name):
+                return name
+            case Group(kinds=kinds):
+                name = _name(kind)
+                members = (
+                    [f"{self.structure(kinds[0])} v[{len(kinds)}];"]
+                    if kind.even
+                    else [f"{self.typed(one, f'm{k}')};" for k, one in enumerate(kinds)]
+                )
+            case Structure(name=name, fields=fields):
+                members = [f"{_marked(self.typed(one, field), set())};" for field, one in fields]
+            case _:
+                raise CannotExport(f"no structure is {kind}")
+        definition = f"typedef struct {{\n{''.join(f'{INDENT}{member}{chr(10)}' for member in members)}}} {name};"
+        if self.structures.setdefault(name, definition) != definition:
+            raise CannotExport(f"there are two structures {name!r}")
         return name
 
+    def typed(self, kind: Kind, name: str) -> str:
+        """The declaration of a variable; of an array with a mark for its origin, which tells whether it is constant."""
+        if isinstance(kind, Array):
+            return f"@{kind.origin}@{kind.element.name} *{name}"
+        return f"{self.structure(kind)} {name}"
 
-class Body:
-    """The statements of one function."""
+    def named(self, called: type, kinds: list[Kind]) -> Structure:
+        """The type of a named tuple with fields of these types."""
+        origin = FOREVER if called in self.constant else ""
+        own = [Array(kind.element, kind.shape, origin) if isinstance(kind, Array) else kind for kind in kinds]
+        names: tuple[str, ...] = called._fields  # type: ignore[attr-defined]
+        return Structure(called.__name__, tuple(zip(names, own, strict=True)))
 
-    def __init__(self, program: Translation, known: dict[str, str], result: str) -> None:
-        self.program, self.known, self.result = program, known, result
-        self.lines = [f"    (void){name};" for name in known]
-        self.spare = 0
+    def call(self, function: Callable[..., Any], kinds: list[Kind]) -> tuple[str, Kind, list[bool]]:
+        """Name and result of a function for arguments of these types, and whether it writes to each."""
+        key = function, tuple(kinds)
+        if key not in self.functions:
+            self.functions[key] = self._translated(function, kinds)
+        return self.functions[key]
 
-    def add(self, statement: ast.stmt, indent: str = "    ") -> None:
-        """Translate a statement."""
-        match statement:
-            case ast.Return(value=ast.expr() as value):
-                self.lines.append(f"{indent}return {self.value(value)[0]};")
-            case ast.Assign(targets=[target], value=value):
-                self._assign(target, value, indent)
-            case ast.If(test=test, body=body, orelse=orelse):
-                for name in _assigned([*body, *orelse]):
-                    self._declare_ahead(name, [*body, *orelse], indent)
-                self.lines.append(f"{indent}if ({self.value(test)[0]}) {{")
-                for one in body:
-                    self.add(one, indent + "    ")
-                if orelse:
-                    self.lines.append(f"{indent}}} else {{")
-                for one in orelse:
-                    self.add(one, indent + "    ")
-                self.lines.append(f"{indent}}}")
-            case _:
-                raise CannotExport(f"no C is known for {ast.unparse(statement)!r}")
-
-    def _declare_ahead(self, name: str, statements: list[ast.stmt], indent: str) -> None:
-        """Declare what a branch assigns, unless it is known: its type is that of the first assignment."""
-        if name in self.known:
-            return
-        trial = Body(self.program, dict(self.known), self.result)
-        for statement in statements:
-            trial.add(statement)
-            if name in trial.known:
-                break
-        self.known[name] = trial.known[name]
-        self.lines.append(f"{indent}{self.known[name]} {name};")
-
-    def _assign(self, target: ast.expr, value: ast.expr, indent: str) -> None:
-        if isinstance(target, ast.Name):
-            self._set(target.id, *self.value(value), indent)
-            return
-        assert isinstance(target, ast.Tuple)
-        if isinstance(value, ast.Tuple):
-            parts = [self.value(one) for one in value.elts]
-        else:
-            text, kind = self.value(value)
-            whole = self._spare(text, kind, indent)
-            parts = [self._member(whole, kind, k) for k in range(len(target.elts))]
-        held = [(self._spare(text, kind, indent), kind) for text, kind in parts]  # all are read before one is written
-        for one, (text, kind) in zip(target.elts, held, strict=True):
-            assert isinstance(one, ast.Name)
-            self._set(one.id, text, kind, indent)
-
-    def _set(self, name: str, text: str, kind: str, indent: str) -> None:
-        declared = "" if name in self.known else f"{kind} "
-        self.known.setdefault(name, kind)
-        self.lines.append(f"{indent}{declared}{name} = {text};")
-
-    def _spare(self, text: str, kind: str, indent: str) -> str:
-        self.spare += 1
-        self.lines.append(f"{indent}{kind} s{self.spare}_{len(indent)} = {text};")
-        return f"s{self.spare}_{len(indent)}"
-
-    def _member(self, whole: str, kind: str, k: int) -> tuple[str, str]:
-        if kind.startswith("T"):
-            return f"{whole}.v[{k}]", NUMBER
-        fields = self.program.structures[kind].partition("{ ")[2].partition(" }")[0].split("; ")
-        return f"{whole}.m{k}", fields[k].split(" ")[0]
-
-    def value(self, node: ast.expr) -> tuple[str, str]:
-        """An expression, and its type."""
-        text = ast.unparse(node)
-        if text in self.program.numbers:
-            return _literal(self.program.numbers[text])
-        match node:
-            case ast.Constant(value=bool() as flag):
-                return str(int(flag)), FLAG
-            case ast.Constant(value=int() as whole):
-                return str(whole), WHOLE
-            case ast.Constant(value=float() as number):
-                return repr(number), NUMBER
-            case ast.Name(id=name):
-                return name, self.known[name]
-            case ast.Subscript(value=ast.Name(id=name), slice=ast.Constant(value=int() as k)):
-                return self._member(name, self.known[name], k)
-            case ast.Tuple(elts=elements):
-                parts = [self.value(one) for one in elements]
-                kind = self.program.structure([kind for _, kind in parts])
-                inside = ", ".join(text for text, _ in parts)
-                return f"({kind}){{{{{inside}}}}}" if kind[0] == "T" else f"({kind}){{{inside}}}", kind
-            case ast.Call(func=function, args=arguments):
-                return self._call(ast.unparse(function), arguments)
-            case ast.UnaryOp(op=op, operand=operand):
-                text, kind = self.value(operand)
-                return f"({OPERATORS[type(op)]}{text})", kind
-            case ast.BinOp(left=left, op=op, right=right):
-                (a, kind), (b, other) = self.value(left), self.value(right)
-                return f"({a} {OPERATORS[type(op)]} {b})", NUMBER if NUMBER in (kind, other) else kind
-            case ast.BoolOp(op=op, values=values):
-                return "(" + f" {OPERATORS[type(op)]} ".join(self.value(one)[0] for one in values) + ")", FLAG
-            case ast.Compare(left=left, ops=[op], comparators=[right]):
-                return f"({self.value(left)[0]} {OPERATORS[type(op)]} {self.value(right)[0]})", FLAG
-            case ast.IfExp(test=test, body=body, orelse=orelse):
-                text, kind = self.value(body)
-                return f"({self.value(test)[0]} ? {text} : {self.value(orelse)[0]})", kind
-        raise CannotExport(f"no C is known for {ast.unparse(node)!r}")
-
-    def _call(self, name: str, arguments: list[ast.expr]) -> tuple[str, str]:
-        given = ", ".join(self.value(one)[0] for one in arguments if ast.unparse(one) != "form")
-        if name in MATH:
-            return f"{MATH[name]}({given})", NUMBER
-        return f"{name}({given})", self.program.returns[name]
+    def _translated(self, function: Callable[..., Any], kinds: list[Kind]) -> tuple[str, Kind, list[bool]]:
+        tree, scope = source_of(function)
+        parameters = [argument.arg for argument in tree.args.args]
+        own = [
+            Array(kind.element, kind.shape, name) if isinstance(kind, Array) else kind
+            for name, kind in zip(parameters, kinds, strict=True)
+        ]
+        names = {name: Value(name, kind) for name, kind in zip(parameters, own, strict=True)}
+        body = Body(self, tree, scope, names)
+        body.run(tree.body)
+        result = body.result or NOTHING
+        given = ", ".join(self.typed(kind, name) for name, kind in zip(parameters, own, strict=True))
+        unused = [f"{INDENT}(void){name};" for name in parameters if not body.read.get(name)]
+        self.named_so[tree.name] += 1
+        number = self.named_so[tree.name]
+        name = tree.name if number == 1 else f"{tree.name}_{number}"
+        text = [f"static {self.structure(result)} {name}({given})", "{", *unused, *body.ahead, *body.lines, "}"]
+        self.code.append(_comment(tree) + _marked("\n".join(text), body.written))
+        return name, result, [parameter in body.written for parameter in parameters]
 
 
-def _assigned(statements: list[ast.stmt]) -> list[str]:
-    """Names that statements give a value, in their order."""
-    stored = [
-        node.id
-        for statement in statements
-        for node in ast.walk(statement)
-        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
-    ]
-    return list(dict.fromkeys(stored))
+def _name(kind: Kind) -> str:
+    """A name for a tuple, of what it holds: D3 for three numbers, D3x2 for two of these."""
+    match kind:
+        case Scalar(letter=letter):
+            return letter
+        case Group(kinds=kinds) if kind.even:
+            first = _name(kinds[0])
+            return f"{first}x{len(kinds)}" if isinstance(kinds[0], Group) else f"{first}{len(kinds)}"
+        case Group(kinds=kinds):
+            return "_".join(["Of", *map(_name, kinds)])
+    raise CannotExport(f"a tuple of {kind} has no name")
 
 
-def _literal(value: Any) -> tuple[str, str]:
-    """A constant in C: a number, or a tuple of them."""
-    if isinstance(value, tuple):
-        return f"(T{len(value)}){{{{{', '.join(repr(float(one)) for one in value)}}}}}", f"T{len(value)}"
-    return repr(float(value)), NUMBER
+def _marked(text: str, written: set[str]) -> str:
+    """Text with the marks of arrays resolved: what belongs to a parameter is constant, unless that is written to."""
+    return re.sub(r"@(.*?)@", lambda mark: "" if mark[1] == "" or mark[1] in written else "const ", text)
+
+
+def _comment(tree: ast.FunctionDef) -> str:
+    lines = (ast.get_docstring(tree) or "").splitlines()
+    return "/* " + "\n".join([*lines[:1], *(f" * {line}".rstrip() for line in lines[1:])]) + " */\n"

@@ -1,4 +1,4 @@
-"""One arm's closed form as a file of C or Python: its numbers, the functions of the kernels, and what calls them."""
+"""One arm's inverse kinematics as C or Python: its numbers, the functions of the kernels, and what calls them."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ import numpy as np
 from pin_metaik.arguments import checked
 from pin_metaik.errors import CannotExport
 from pin_metaik.export.drivers import PYTHON, C
+from pin_metaik.export.parsed import source_of
+from pin_metaik.export.tables import as_declared, tables_of
 from pin_metaik.export.to_c import Translation
 from pin_metaik.export.to_python import python_of
 from pin_metaik.kinematics import Chain
@@ -22,6 +24,7 @@ ACROSS = ("ACROSS", "ACROSS_WORLD")
 ENTRIES = ("LEVEL", "SIDE_2", "SIDE_3")
 FAR = 1e9  # rad: where a joint without limits ends
 EXACT = 1e-6  # m and rad: how far an arm may be from its closed form, as nothing descends in exported code
+BRANCHES = 8  # configurations at most by a closed form
 
 
 @checked
@@ -34,23 +37,16 @@ def exported(chain: Chain, language: str = "c") -> str:
     by whole turns nearest to a guess.
 
     Args:
-        chain: An arm with a closed form.
+        chain: An arm with a closed form or, for C, any arm of six joints.
         language: ``"c"`` or ``"python"``.
 
     Raises:
-        CannotExport: The arm has no closed form, or only nearly (a calibrated arm); or there is no such language.
+        CannotExport: The chain has not six joints; it has no closed form, or only nearly (a calibrated arm), and the
+            language is Python; or there is no such language.
     """
     if language not in LANGUAGES:
         raise CannotExport(f"there is no export to {language!r}; known: {', '.join(LANGUAGES)}")
-    proof = chain.form_proof
-    off = np.inf if proof is None else float(max(proof.deviation)) - layout.ROUNDING
-    if proof is None or off > EXACT:
-        raise CannotExport(
-            f"{chain.model.name!r} has no closed form to write: six turning joints, axes 2 and 3 parallel, axes 5 "
-            "and 6 meeting, and axis 4 either through that point, too, or parallel to axes 2 and 3, have one, as ur5, "
-            "puma560, rv7fl, z1 and kinova do"
-        )
-    return LANGUAGES[language](chain, _numbers(chain))
+    return LANGUAGES[language](chain)
 
 
 @checked
@@ -66,8 +62,14 @@ def write_export(chain: Chain, path: Path) -> None:
     writable(path).write_text(exported(chain, SUFFIXES[path.suffix]), encoding="utf-8")
 
 
+def _has_form(chain: Chain) -> bool:
+    """Whether the arm is exactly one with a closed form."""
+    proof = chain.form_proof
+    return proof is not None and float(max(proof.deviation)) - layout.ROUNDING <= EXACT
+
+
 def _numbers(chain: Chain) -> dict[str, Any]:
-    """The value of each expression that names a constant in the kernels."""
+    """The value of each expression that names a constant in the closed form."""
     from pin_metaik.export.sources import CONSTANTS
 
     form = chain.form
@@ -87,28 +89,62 @@ def _columns(chain: Chain) -> list[int]:
     return [int(column) for column in chain.paths.wiring[:, layout.COLUMN]]
 
 
-def _as_c(chain: Chain, numbers: dict[str, Any]) -> str:
-    from pin_metaik.export.sources import FUNCTIONS, parsed
+def _by_form(chain: Chain) -> tuple[Callable[..., int], tuple[Any, ...], int]:
+    """What computes configurations by the closed form, the arm that it takes, and how many there are at most."""
+    from pin_metaik.export.solutions import FormArm, by_branches
 
-    program, limits = Translation(numbers), _limits(chain)
-    for function in FUNCTIONS:
-        program.add(parsed(function))
+    return by_branches, FormArm(chain.form, np.array(_columns(chain))), BRANCHES
+
+
+def _by_roots(chain: Chain) -> tuple[Callable[..., int], tuple[Any, ...], int]:
+    """The same by the roots of six joints."""
+    from pin_metaik.export.solutions import RootsArm, by_roots
+
+    six = chain._six_joints
+    if six is None:
+        raise CannotExport(
+            f"{chain.model.name!r} has no finite set of solutions to write: one frame that six joints move has one, "
+            f"where joints that follow others turn at whole multiples of them; here {chain.n} move {len(chain.frames)}"
+        )
+    return by_roots, RootsArm(*six.arm, six.length, six.loops, six.poses, six.known, six.degree), six.degree
+
+
+def _as_c(chain: Chain) -> str:
+    from pin_metaik.export.solutions import CALLED_WITH, CONSTANT, Wanted
+
+    function, arm, bound = (_by_form if _has_form(chain) else _by_roots)(chain)
+    limits = _limits(chain)
+    lower, upper = (np.array([one[k] for one in limits]) for k in (1, 2))
+    rotates, multi_turn = chain.limits.rotates.astype(np.int64), chain.limits.multi_turn.astype(np.int64)
+    wanted = Wanted(lower, upper, rotates, multi_turn, near=np.empty(6))
+    arm_tables, limit_tables = tables_of(arm), tables_of(wanted)
+    program = Translation(CONSTANT)
+    kinds = [program.named(type(one), [table.kind for table in tables_of(one)]) for one in (arm, wanted)]
+    name, _, _ = program.call(function, [*kinds, *CALLED_WITH])
+    limit_tables.pop()  # near, which is given
     return C.substitute(
         name=chain.model.name,
         joints=", ".join(name for name, _, _ in limits),
-        lower=", ".join(repr(lower) for _, lower, _ in limits),
-        upper=", ".join(repr(upper) for _, _, upper in limits),
-        columns=", ".join(map(str, _columns(chain))),
-        outside=repr(numbers["OUTSIDE"]),
-        structures="\n".join(program.structures.values()),
-        functions="\n\n".join(program.code),
+        program=program.text,
+        tables="\n".join(as_declared(table) for table in (*arm_tables, *limit_tables)),
+        bound=bound,
+        function=name,
+        arm_type=type(arm).__name__,
+        arm=", ".join(table.name for table in arm_tables),
+        limits=", ".join(table.name for table in limit_tables),
     )
 
 
-def _as_python(chain: Chain, numbers: dict[str, Any]) -> str:
-    from pin_metaik.export.sources import FUNCTIONS, parsed
+def _as_python(chain: Chain) -> str:
+    from pin_metaik.export.sources import FUNCTIONS
 
-    limits = _limits(chain)
+    if not _has_form(chain):
+        raise CannotExport(
+            f"{chain.model.name!r} has no closed form to write in Python: six turning joints, axes 2 and 3 parallel, "
+            "axes 5 and 6 meeting, and axis 4 either through that point, too, or parallel to axes 2 and 3, have one, "
+            "as ur5, puma560, rv7fl, z1 and kinova do; any other arm of six joints can be written in C, as .c"
+        )
+    limits, numbers = _limits(chain), _numbers(chain)
     return PYTHON.substitute(
         name=chain.model.name,
         joints=", ".join(name for name, _, _ in limits),
@@ -116,9 +152,9 @@ def _as_python(chain: Chain, numbers: dict[str, Any]) -> str:
         upper=repr(tuple(upper for _, _, upper in limits)),
         columns=repr(tuple(_columns(chain))),
         outside=repr(numbers["OUTSIDE"]),
-        functions="\n\n\n".join(python_of(parsed(function), numbers) for function in FUNCTIONS),
+        functions="\n\n\n".join(python_of(source_of(function)[0], numbers) for function in FUNCTIONS),
     )
 
 
-LANGUAGES: dict[str, Callable[[Chain, dict[str, Any]], str]] = {"c": _as_c, "python": _as_python}
+LANGUAGES: dict[str, Callable[[Chain], str]] = {"c": _as_c, "python": _as_python}
 SUFFIXES = {".c": "c", ".py": "python"}

@@ -20,11 +20,11 @@ from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.refine.descent import Descent
 from pin_metaik.ik.result import Parts
 from pin_metaik.kinematics import Chain
+from pin_metaik.kinematics.roots.real import FOR_ROOTS
 
 ROOM = 0.1  # of the distance between distinct solutions: tolerances that may move a solution so far
 FORM, ROOTS = 8, 64  # solutions at most by a closed form, and by the roots of six joints
 ENOUGH = 10_000  # evaluations: more than descents from all roots take
-FOR_ROOTS = 20_000  # evaluations: more than it takes to find them
 
 
 @dataclass(frozen=True, eq=False, slots=True)

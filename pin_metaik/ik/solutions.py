@@ -19,7 +19,7 @@ from pin_metaik.ik.collect import collect
 from pin_metaik.ik.criteria import Selection, measure_of
 from pin_metaik.ik.goals.pose import Target
 from pin_metaik.ik.labels import labels_of
-from pin_metaik.ik.plain_all import ENOUGH, FOR_ROOTS, ROOTS, all_of_plain
+from pin_metaik.ik.plain_all import ENOUGH, ROOTS, all_of_plain
 from pin_metaik.ik.problem import Asked, IKProblem, check_world
 from pin_metaik.ik.proof import Proof
 from pin_metaik.ik.result import Parts
@@ -33,6 +33,7 @@ from pin_metaik.ik.self_motion.motions import (
 from pin_metaik.ik.singular import dimension_at
 from pin_metaik.ik.solver import APART, DEFAULT_SOLVER, IKSolver
 from pin_metaik.kinematics import Chain
+from pin_metaik.kinematics.roots.real import FOR_ROOTS
 from pin_metaik.optimize import Budget
 from pin_metaik.optimize.settings import few, positive
 from pin_metaik.plain import fields_of

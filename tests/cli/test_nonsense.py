@@ -38,7 +38,8 @@ def call(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
 
 
 NONSENSE: list[tuple[tuple[object, ...], str]] = [
-    (("export", "panda", "-o", "arm.c"), "has no closed form to write"),
+    (("export", "panda", "-o", "arm.c"), "has no finite set of solutions to write"),
+    (("export", "aerial_arm", "-o", "arm.py"), "has no closed form to write"),
     (("export", "ur5", "-o", "arm.f90"), "the suffix gives the language"),
     (("solve", "ur5", *POSE, "--frame", ""), "no frame named ''"),
     (("solve", "ur5", *POSE, "--refiner", "lma"), "did you mean 'lm'"),
