@@ -57,6 +57,7 @@ class SelfMotions:
     def __iter__(self) -> Iterator[SelfMotionCurve]:
         return iter(self.curves)
 
+    @checked
     def nearest(self, q: ArrayLike, weights: Mapping[str, float] | None = None) -> CurvePoint:
         """The point of all curves with the least distance from a configuration (nq,); see ``SelfMotionCurve.nearest``.
 
