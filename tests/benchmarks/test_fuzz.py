@@ -29,7 +29,8 @@ def test_earlier_parts_count_where_there_is_no_later_one_of_the_reader(file: Pat
     kept = Kept(file, earlier=True)
     assert kept.by == {"WKT": "earlier", "GeoJSON": "now"}
     assert list(kept.parts[NEW].faults) == ["one of now (input 3)"]
-    counts = all_counted({"WKT": 10, "GeoJSON": 10}, 0, 0.0, 1, kept)
+    with elsewhere():
+        counts = all_counted({"WKT": 10, "GeoJSON": 10}, 0, 0.0, 1, kept)
     text = "\n".join(page(counts, kept.by))
     assert "| all | 20 | 8 | 10 | 2 | |" in text
     assert "earlier" in text.splitlines()[-1] and "now" in text.splitlines()[-1]
