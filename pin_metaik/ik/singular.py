@@ -24,16 +24,18 @@ SLACK, SHARE = 5e-6, 0.5  # ... and greatest, and as a share of the tolerances
 STEP, SHORTEST = 0.05, 1e-3  # rad or m from point to point; the last step, before a limit
 CORRECTIONS = 12
 POINTS = 2_000  # of a curve, each way
-TURN = 2.0 * np.pi
 
 
-def dimension_at(problem: IKProblem, x: Array) -> int:
-    """How many degrees of freedom the solutions near x (n,) have: 0 where it is separate, 1 on a curve.
+def dimensions_at(problem: IKProblem, X: Array) -> tuple[int, ...]:
+    """How many degrees of freedom the solutions near each x of X (k, n) have: 0 where it is separate, 1 on a curve.
 
     A chain with spare coordinates has as many, here and elsewhere. In a singularity of any other a motion is tried.
     """
     spare = problem.chain.n - problem.m
-    return spare if spare > 0 else NullMotions.of(problem).dimension(x)
+    if spare > 0:
+        return (spare,) * len(X)
+    motions = NullMotions.of(problem)
+    return tuple(motions.dimension(x) for x in X)
 
 
 @dataclass(frozen=True)

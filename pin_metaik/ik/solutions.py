@@ -30,7 +30,7 @@ from pin_metaik.ik.self_motion.motions import (
     find_self_motions,
     has_curves,
 )
-from pin_metaik.ik.singular import dimension_at
+from pin_metaik.ik.singular import dimensions_at
 from pin_metaik.ik.solver import APART, DEFAULT_SOLVER, IKSolver
 from pin_metaik.kinematics import Chain
 from pin_metaik.kinematics.roots.real import FOR_ROOTS
@@ -124,7 +124,7 @@ class IKSolutions:
         motion that is tried shows: then q has one solution
         of each curve (1), the nearest to the start of all points 0.05 rad or m apart, and of all surfaces (2) one.
         """
-        return tuple(dimension_at(self.problem, x) for x in self.x)
+        return dimensions_at(self.problem, self.x)
 
     @checked
     def best(self, criterion: Selection, q0: ArrayLike | None = None) -> NDArray[np.float64]:

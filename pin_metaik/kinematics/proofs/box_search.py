@@ -139,16 +139,13 @@ def cover(
         for c in range(n):
             if splits[c] == 1 and width[c] > least and (at < 0 or weights[c] > weights[at]):
                 at = c
+        if at < 0 and bends and not straight:
+            box = waiting[count]
+            ways, _ = wrist_turns(arm, laid, box[:n], box[n:], aligned, 2, turned)
+            straight = ranges_widely(turned, ways, least)  # then its joints are split as if it might be straight
         if at < 0 and straight:
             at = widest(width, splits, 1, FINER * least)
             at = widest(width, splits, 0, least) if at < 0 else at
-        elif at < 0 and bends:
-            box = waiting[count]
-            ways, _ = wrist_turns(arm, laid, box[:n], box[n:], aligned, 2, turned)
-            straight = ranges_widely(turned, ways, least)
-            if straight:
-                at = widest(width, splits, 1, FINER * least)
-                at = widest(width, splits, 0, least) if at < 0 else at
         if at >= 0:
             for side in range(2):
                 put(centre, width, waiting[count])
