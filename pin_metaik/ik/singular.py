@@ -185,14 +185,14 @@ class Continua:
         return np.reshape(kept, (len(kept), len(x0)))
 
     def _is_new(self, x: Array) -> bool:
-        from pin_metaik.kinematics.self_motion.near import is_on_curve
+        from pin_metaik.kinematics.self_motion.near import is_near_curve
 
         multi_turn = self._problem.limits.multi_turn.astype(np.int64)
         if any(self._are_one(x, other) for other in self.separate):
             return False
         met = np.linalg.norm(self._motions.problem.linearize(x)[0]) < EXACT
         known = self.curves if met else [*self.curves, *self._ways]  # a motion may lead to another that is met exactly
-        if any(is_on_curve(x, curve, multi_turn, self._apart) for curve in known):
+        if any(is_near_curve(x, curve, multi_turn, self._apart) for curve in known):
             return False
         dimension = self._motions.dimension(x)
         if dimension > 1:

@@ -50,6 +50,37 @@ def test_curves_through_a_shoulder_that_is_nearly_straight_are_found(bend: float
     assert proved >= 5
 
 
+@pytest.mark.parametrize("bend", [1e-2, 1e-3, 3.5e-4])
+def test_two_curves_that_are_very_near_to_each_other_are_told_apart(bend: float) -> None:
+    """An elbow that is nearly stretched may bend to either side, and the other joints hardly tell."""
+    chain = mik.Chain(arm_with_an_elbow(), "tip")
+    for x in chain.box.sample(np.random.default_rng(1), 4):
+        x[3] = bend
+        pose = chain.poses(x)[0, 0]
+        motions = mik.self_motions(chain, pose)
+        for side in (1.0, -1.0):
+            bent = x.copy()
+            bent[3] = side * bend
+            for _ in range(20):  # Newton's method; the elbow stays on its side
+                error, J = mik.IKProblem.of(chain, pose).exact.linearize(bent)
+                bent -= np.linalg.pinv(J.T, rcond=1e-9) @ error
+            assert side * bent[3] > 0.5 * bend
+            assert np.linalg.norm(error) < 1e-12
+            if chain.limits.contains(bent):
+                assert motions.nearest(chain.q(bent)).value < 1e-4
+
+
+def arm_with_an_elbow() -> pin.Model:
+    """Three joints that meet, an elbow, and three that meet: seven in all, as of a KUKA LBR iiwa."""
+    model, parent = pin.Model(), 0
+    for i, (height, limit) in enumerate(zip((0.34, 0, 0.4, 0, 0.4, 0, 0), (2.9, 2.0) * 3 + (3.0,), strict=True)):
+        joint, up = (pin.JointModelRY() if i % 2 else pin.JointModelRZ()), pin.SE3(np.eye(3), np.array([0, 0, height]))
+        effort, speed = np.ones(1), np.ones(1)
+        parent = model.addJoint(parent, joint, up, f"j{i + 1}", effort, speed, -np.full(1, limit), np.full(1, limit))
+    model.addFrame(pin.Frame("tip", parent, pin.SE3(np.eye(3), np.array([0, 0, 0.126])), pin.FrameType.OP_FRAME))
+    return model
+
+
 def test_a_curve_ends_where_a_joint_meets_its_limit_or_where_it_began() -> None:
     chain = chain_of("xarm7")
     _, motions = motions_of("xarm7", 7)

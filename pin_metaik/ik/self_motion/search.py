@@ -17,14 +17,13 @@ from pin_metaik.randomness import DEFAULT_SEED
 from pin_metaik.watching import Progress, Watch, tell
 
 STEP = 0.05  # rad or m between the points of a curve, at most
-POINTS = 20_000  # of a curve at most
+POINTS = 20_000  # of a curve at most, either way
 CHUNK, MOST = 4_096, 8_192  # boxes looked at, and kept, at a time; kept in all
 FINER = 8.0, 64.0, 512.0  # by how much smaller boxes that are far from all curves are looked at
 SPREAD = 16  # of the boxes to which no curve comes, from which descents start first, at most
 SEEDS = 512  # solutions to follow curves from, at a time
 DRAWN, LOOKED_UP, DRAWN_MORE = 64, 128, 512  # configurations to descend from at first; where boxes have no end
 SEED = DEFAULT_SEED, 0
-SAME = 5e-3  # rad or m: a solution this near to a curve is on it
 
 
 class Search:
@@ -44,6 +43,9 @@ class Search:
         self._total = budget.evaluations or 0
         self._until = np.inf if budget.seconds is None else perf_counter() + budget.seconds
         self._turning = limits.multi_turn.astype(np.int64)
+        n = problem.chain.n
+        self._ways = np.empty((4, POINTS, n))
+        self._curve = np.empty((2 * POINTS, n)), np.empty((2 * POINTS, n)), np.empty(2 * POINTS)
         self._lower = np.where(limits.multi_turn, -np.inf, limits.lower)
         self._upper = np.where(limits.multi_turn, np.inf, limits.upper)
 
@@ -126,58 +128,40 @@ class Search:
             DLS().descent().gather(self._problem, starts, found, 0, apart, len(starts) + 1, self._left, branch=False)
         )
         self.spent += spent
-        for x in found[:known]:
-            if not any(self._is_on(curve, x) for curve in self.curves):
-                curve = self._followed(x)
-                self.curves += [] if curve is None else [curve]
+        found, on = found[:known], np.zeros(known, np.int64)
+        for curve in self.curves:
+            self._mark_on(curve, found, on)
+        for k, x in enumerate(found):
+            new = self._followed(x) if on[k] == 0 else None
+            if new is not None:
+                self.curves.append(new)
+                self._mark_on(new, found, on)
 
-    def _is_on(self, curve: SelfMotionCurve, x: Array) -> bool:
-        """Whether coordinates x (n,) lie on a curve: near to the line from one of its points to the next."""
-        from pin_metaik.kinematics.self_motion.near import is_on_curve
+    def _mark_on(self, curve: SelfMotionCurve, solutions: Array, on: NDArray[np.int64]) -> None:
+        """Mark with 1 the solutions (k, n) that are on a curve."""
+        from pin_metaik.kinematics.self_motion.on_curve import mark_on
 
-        return bool(is_on_curve(x, curve.x, self._turning, SAME))
+        given = self._problem.chain.bare, self._problem.records, self._problem.kernel_rows, self._turning
+        mark_on(*given, solutions, curve.x, curve._tangents, on)
 
     def _followed(self, x: Array) -> SelfMotionCurve | None:
         """The curve through a solution x (n,), from end to end; None in a singularity, and for a point alone."""
-        from pin_metaik.kinematics.self_motion.trace import put_back
+        from pin_metaik.kinematics.self_motion.follow import follow
 
-        problem = self._problem
-        start, tangent = x[None].copy(), null_direction(problem.linearize(x)[1])[None]
-        if put_back(problem.chain.bare, problem.records, problem.kernel_rows, start, tangent) == 0:
-            return None
-        start = np.clip(start, self._lower, self._upper)
-        first = self._trace(start[0], tangent[0], 1.0)
-        if first[2].reason is EndReason.CLOSED:
-            points, tangents, ends = first[0], first[1], (first[2], first[2])
-        else:
-            last = self._trace(start[0], tangent[0], -1.0)
-            points = np.concatenate([last[0][:0:-1], first[0]])
-            tangents = np.concatenate([-last[1][:0:-1], first[1]])
-            ends = last[2], first[2]
-        t = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
-        if t[-1] == 0.0:
-            return None
-        distinct = np.append(True, np.diff(t) > 0.0)  # a curve that begins at a limit may have its end twice
-        points, tangents, t = points[distinct], tangents[distinct], t[distinct]
-        return SelfMotionCurve(self._problem, self._base, points, t, ends, tangents)
-
-    def _trace(self, start: Array, tangent: Array, way: float) -> tuple[Array, Array, CurveEnd]:
-        """Points (k, n) of the curve from a point (n,) on along its tangent, or against it, and how it ends."""
-        from pin_metaik.kinematics.self_motion.trace import AT_LIMIT, CLOSED, trace
-
-        problem = self._problem
+        problem, (points, tangents, t) = self._problem, self._curve
         given = problem.chain.bare, problem.records, problem.kernel_rows, self._lower, self._upper, self._turning
-        points, tangents = np.empty((POINTS, len(start))), np.empty((POINTS, len(start)))
-        tangents[0] = tangent
-        count, why, limit, spent = trace(*given, start, way, STEP, self._left, points, tangents)
+        count, *ends, spent = follow(*given, x.copy(), STEP, self._left, self._ways, points, tangents, t)
         self.spent += spent
-        end = CurveEnd(EndReason.CLOSED if why == CLOSED else EndReason.SINGULARITY)
-        if why == AT_LIMIT:
-            end = CurveEnd(EndReason.LIMIT, problem.chain.names[limit // 2], bool(limit % 2))
-        return points[:count].copy(), tangents[:count].copy(), end
+        if count < 2:
+            return None
+        begin, end = self._end(*ends[:2]), self._end(*ends[2:])
+        found = points[:count].copy(), t[:count].copy(), (begin, end), tangents[:count].copy()
+        return SelfMotionCurve(problem, self._base, *found)
 
+    def _end(self, how: int, limit: int) -> CurveEnd:
+        """How a curve ends, as ``follow`` says it."""
+        from pin_metaik.kinematics.self_motion.trace import AT_LIMIT, CLOSED
 
-def null_direction(J: Array) -> Array:
-    """The unit vector (n,) that a Jacobian, given as its transpose (n, n - 1), maps to zero."""
-    direction: Array = np.linalg.svd(J.T)[2][-1]
-    return np.ascontiguousarray(direction)
+        if how == AT_LIMIT:
+            return CurveEnd(EndReason.LIMIT, self._problem.chain.names[limit // 2], bool(limit % 2))
+        return CurveEnd(EndReason.CLOSED if how == CLOSED else EndReason.SINGULARITY)

@@ -34,7 +34,7 @@ def lever(k: Vector, a: Vector) -> float:
 @inline
 def chord(angle: float) -> float:
     """How far a point at distance 1 from an axis moves at most when it turns by up to an angle of at least 0, rad."""
-    return 2.0 * math.sin(0.5 * min(angle, math.pi))
+    return 2.0 * cos_sin(0.5 * min(angle, math.pi))[1]
 
 
 @inline

@@ -62,8 +62,8 @@ class Laid(NamedTuple):
         turn: (3, 3) rotation of D.
         half: (S,) half width of each joint, rad or m.
         moves: (S,) chord of each joint's half width: how far it moves a point at distance 1, or any by a slide.
-        distances: (S, S) how far joint j carries point k for each unit of its move.
-        angles: (S, S) the same for axis k.
+        distances: (K, S) how far joint j carries point k for each unit of its move; the last k is a wrist's first axis.
+        angles: (K, S) the same for axis k.
         pose: (12,) of the tip at the centre.
     """
 
@@ -80,8 +80,8 @@ class Laid(NamedTuple):
 
 
 @allocating
-def laid_for(S: int) -> Laid:
-    """Room for a chain of S joints."""
+def laid_for(S: int, K: int) -> Laid:
+    """Room for a chain of S joints, K of which balls are tested at."""
     return Laid(
         np.empty((S, 3)),
         np.empty((S, 3)),
@@ -90,8 +90,8 @@ def laid_for(S: int) -> Laid:
         np.empty((3, 3)),
         np.empty(S),
         np.empty(S),
-        np.empty((S, S)),
-        np.empty((S, S)),
+        np.empty((K, S)),
+        np.empty((K, S)),
         np.empty(12),
     )
 
@@ -134,12 +134,17 @@ def lay(arm: BoxArm, target: Floats, centre: Floats, width: Floats, laid: Laid) 
         write(times(turn, z), laid.target_axes[k])
         half = abs(joints[k, SCALE]) * width[wiring[k, COLUMN]]
         laid.half[k], laid.moves[k] = half, chord(half) if wiring[k, ROTATES] == 1 else half
-    for j in range(S):
+
+
+@inline
+def lay_levers(arm: BoxArm, laid: Laid, first: int) -> None:
+    """Measure how far joints carry the points and axes from a first one on."""
+    for j in range(laid.half.shape[0]):
         z, o = vector(laid.axes[j]), vector(laid.points[j])
-        for k in range(S):
-            if wiring[j, ROTATES] == 1:
-                laid.distances[k, j] = 0.0 if j == k else norm(cross(z, minus(vector(laid.points[k]), o)))
-                laid.angles[k, j] = 0.0 if j == k else norm(cross(z, vector(laid.axes[k])))
+        for k in range(first, laid.angles.shape[0]):
+            if arm.wiring[j, ROTATES] == 1:
+                laid.distances[k, j] = norm(cross(z, minus(vector(laid.points[k]), o)))
+                laid.angles[k, j] = norm(cross(z, vector(laid.axes[k])))
             else:
                 laid.distances[k, j], laid.angles[k, j] = 1.0, 0.0
 

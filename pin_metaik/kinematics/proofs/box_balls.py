@@ -8,6 +8,9 @@ With e the tolerance, m and rad:
    the points, z_i . z_j, and the height of each point along the other axis depend on the joints between alone: on none
    of them (constants), on one (sinusoids, exact), or on more (balls again).
 
+Of an arm with a wrist the last point is that where its axes meet, which each of the others makes a pair with alone:
+``box_wrist`` tells more of the wrist's axes.
+
 What tells distances to elbow and wrist, offsets and parallel axes apart without splitting: of 30,000 boxes a target the
 pairs prove 4 of 4 instead of none (ur5), 9 of 9 instead of 2 (pr2), at twice the time a box.
 """
@@ -20,27 +23,30 @@ from pin_metaik.compiled import Floats, inline, shared
 from pin_metaik.kinematics.kernel.closed_form import cross, dot, minus, vector
 from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES
 from pin_metaik.kinematics.proofs.balls import norm
-from pin_metaik.kinematics.proofs.box import BoxArm, Laid, cosine_range
+from pin_metaik.kinematics.proofs.box import BoxArm, Laid, cosine_range, lay_levers
 
 
 @shared
-def excluded_by_balls(arm: BoxArm, laid: Laid, near: float, aligned: float, pairs: bool, weights: Floats) -> bool:
+def excluded_by_balls(
+    arm: BoxArm, laid: Laid, near: float, aligned: float, first: int, pairs: bool, weights: Floats
+) -> bool:
     """Whether the box holds no configuration within ``near`` (m) and ``aligned`` (rad) of the target.
 
-    ``pairs``: whether pairs of axes are looked at, too. ``weights`` (n,) gets how much each coordinate keeps the tests
-    from excluding: what to split.
+    ``first``: the point and axis from which on these are looked at; ``pairs``: whether pairs of them are, too.
+    ``weights`` (n,) gets how much each coordinate keeps the tests from excluding: what to split.
     """
-    if excluded_by_points(arm, laid, near, aligned, weights):
+    lay_levers(arm, laid, 0 if pairs else first)
+    if excluded_by_points(arm, laid, near, aligned, first, weights):
         return True
     return pairs and excluded_by_pairs(arm, laid, near, aligned)
 
 
 @inline
-def excluded_by_points(arm: BoxArm, laid: Laid, near: float, aligned: float, weights: Floats) -> bool:
+def excluded_by_points(arm: BoxArm, laid: Laid, near: float, aligned: float, first: int, weights: Floats) -> bool:
     """Test 1, which also weighs the coordinates."""
-    S = laid.half.shape[0]
+    K, S = laid.distances.shape
     weights[:] = 0.0
-    for k in range(S):
+    for k in range(first, K):
         apart = norm(minus(vector(laid.points[k]), vector(laid.target_points[k])))
         turned = norm(minus(vector(laid.axes[k]), vector(laid.target_axes[k])))
         room, lean = near, aligned
@@ -66,15 +72,15 @@ def seventh_power(share: float) -> float:
 @inline
 def excluded_by_pairs(arm: BoxArm, laid: Laid, near: float, aligned: float) -> bool:
     """Test 2."""
-    S = laid.half.shape[0]
-    for i in range(S):
+    K, S = laid.distances.shape
+    for i in range(K - 1):
         if arm.wiring[i, ROTATES] == 0:
             continue
         place, lean = near, aligned  # what the joints before i, and then those after j, make of the axes
         for m in range(i):
             place += laid.moves[m] * laid.distances[i, m]
             lean += laid.moves[m] * laid.angles[i, m]
-        for j in range(i + 1, S):
+        for j in range(i + 1 if K == S else K - 1, K):
             if arm.wiring[j, ROTATES] == 1 and excluded_by_pair(arm, laid, i, j, near, aligned, place, lean):
                 return True
     return False

@@ -23,12 +23,13 @@ PAD = 1e-12  # rad or m: rounding
 
 
 @shared
-def contracted(columns: Floats, b: Equations, centre: Floats, width: Floats, system: Floats) -> float:
+def contracted(columns: Floats, b: Equations, equations: int, centre: Floats, width: Floats, system: Floats) -> float:
     """Shrink a box to what the equations leave of it, in place.
 
     Args:
         columns: (n, 6) A by coordinate.
         b: The right side.
+        equations: How many of them say anything: 3, those of the place, or 6.
         centre: (n,) of the box.
         width: (n,) its half widths.
         system: (9, n + 6) scratch.
@@ -36,36 +37,37 @@ def contracted(columns: Floats, b: Equations, centre: Floats, width: Floats, sys
     Returns:
         What is left of the sum of the half widths that they are about, as a share; 0 if nothing can be in the box.
     """
-    n = width.shape[0]
+    n, E = width.shape[0], equations
     low, high, solved = system[6], system[7], system[8]
-    for r in range(6):
+    for r in range(E):
         for c in range(n):
             system[r, c] = columns[c, r]
-        for k in range(6):
+        for k in range(E):
             system[r, n + k] = 1.0 if r == k else 0.0
     for c in range(n):
         low[c], high[c] = -width[c], width[c]
-    rank = eliminated(system, width, solved)
+    rank = eliminated(system, E, width, solved)
     for r in range(rank):
         c = int(solved[r])
-        slope = middle = 0.0
-        for k in range(6):
-            slope += system[r, n + k] * columns[c, k]
-            middle += system[r, n + k] * b[k]
+        slope = middle = place = turn = 0.0
+        for k in range(E):
+            u = system[r, n + k]
+            slope += u * columns[c, k]
+            middle += u * b[k]
+            if k < 3:
+                place += u * u
+            else:
+                turn += u * u
         if slope < 0.5:  # it is 1 but for rounding
             continue
         least = most = middle
         for j in range(n):
             if j != c:
                 share = 0.0
-                for k in range(6):
+                for k in range(E):
                     share += system[r, n + k] * columns[j, k]
                 least -= max(share * low[j], share * high[j])
                 most -= min(share * low[j], share * high[j])
-        place = turn = 0.0
-        for k in range(3):
-            place += system[r, n + k] * system[r, n + k]
-            turn += system[r, n + 3 + k] * system[r, n + 3 + k]
         spread = math.sqrt(place) + math.sqrt(turn)
         low[c], high[c] = max(low[c], (least - spread) / slope - PAD), min(high[c], (most + spread) / slope + PAD)
         if low[c] > high[c]:
@@ -82,15 +84,15 @@ def contracted(columns: Floats, b: Equations, centre: Floats, width: Floats, sys
 
 
 @shared
-def eliminated(system: Floats, width: Floats, solved: Floats) -> int:
-    """Solve [A | I] (6, n + 6) for coordinates that move much within their half widths (n,); for how many.
+def eliminated(system: Floats, E: int, width: Floats, solved: Floats) -> int:
+    """Solve [A | I] (E, n + E) for coordinates that move much within their half widths (n,); for how many.
 
-    The row that is solved for a coordinate, whose number goes into ``solved`` (6,), is divided by its pivot.
+    The row that is solved for a coordinate, whose number goes into ``solved`` (E,), is divided by its pivot.
     """
     n = width.shape[0]
-    for r in range(6):
+    for r in range(E):
         at, column, largest = r, -1, LEAST
-        for i in range(r, 6):
+        for i in range(r, E):
             for c in range(n):
                 size = abs(system[i, c]) * width[c]
                 if size > largest:
@@ -98,17 +100,17 @@ def eliminated(system: Floats, width: Floats, solved: Floats) -> int:
         if column < 0:
             return r
         solved[r] = column
-        for j in range(n + 6):
+        for j in range(n + E):
             system[r, j], system[at, j] = system[at, j], system[r, j]
         inverse = 1.0 / system[r, column]
-        for j in range(n + 6):
+        for j in range(n + E):
             system[r, j] *= inverse
-        for i in range(6):
+        for i in range(E):
             factor = system[i, column]
             if i != r and factor != 0.0:
-                for j in range(n + 6):
+                for j in range(n + E):
                     system[i, j] -= factor * system[r, j]
-    return 6
+    return E
 
 
 @shared

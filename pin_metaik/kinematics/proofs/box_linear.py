@@ -79,7 +79,8 @@ def to_first_order(
                 z = vector(laid.axes[i]) if here else vector(laid.target_axes[i])
                 place += laid.half[i] * laid.half[j] * norm(cross(z, vector(rows[j, :3])))
                 if arm.wiring[j, ROTATES] == 1:
-                    lean += laid.half[i] * laid.half[j] * (0.5 * laid.angles[i, j] + (0.0 if here else twist))
+                    other = vector(laid.axes[j]) if here else vector(laid.target_axes[j])
+                    lean += laid.half[i] * laid.half[j] * (0.5 * norm(cross(z, other)) + (0.0 if here else twist))
     cubes = (before**3 + after**3) / 6.0
     place += cubes * arm.reach[0] + 0.5 * slid * (before * before + after * after)
     lean += cubes

@@ -18,7 +18,7 @@ from pin_metaik.kinematics.proofs.box import BENT, SPLIT, BoxArm, laid_for, lay
 from pin_metaik.kinematics.proofs.box_balls import excluded_by_balls
 from pin_metaik.kinematics.proofs.box_contract import bend, contracted, first_joint_turned, ranges_widely
 from pin_metaik.kinematics.proofs.box_linear import separated, to_first_order
-from pin_metaik.kinematics.proofs.box_wrist import wrist_turns
+from pin_metaik.kinematics.proofs.box_wrist import may_be_straight, wrist_turns
 
 FIRST_ORDER = 3.0  # rad, sum of the half widths up to which the series is worth looking at
 SMALL = 0.5  # rad, the same sum, below which pairs of axes tell little that shrinking does not
@@ -89,7 +89,7 @@ def cover(
     last = S - 3 if has_wrist else S  # joints that are split
     centre, width, start, weights, way = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     rows, columns, splits = np.empty((S, 6)), np.empty((n, 6)), np.zeros(n, np.int64)
-    laid = laid_for(S)
+    laid = laid_for(S, last + 1 if has_wrist else S)
     for k in range(last):
         splits[wiring[k, COLUMN]] = 1
     shrinks, bends, system, turned = wrist[1] > 0, wrist[1] == BENT, np.empty((9, n + 6)), np.empty((2, 9))
@@ -99,8 +99,9 @@ def cover(
             break
         looked += 1
         count -= 1
+        box = waiting[count]
         for c in range(n):
-            centre[c], width[c] = waiting[count, c], waiting[count, n + c]
+            centre[c], width[c] = box[c], box[n + c]
             start[c] = centre[c]
         lay(arm, target, centre, width, laid)
         total = whole = 0.0
@@ -108,31 +109,30 @@ def cover(
             half = laid.half[k] if wiring[k, ROTATES] == 1 else 0.0
             whole += half
             total += half if k < last else 0.0
-        if excluded_by_balls(arm, laid, near, aligned, total > SMALL or not shrinks, weights):
+        straight = wrist[1] == SPLIT or (bends and may_be_straight(arm, laid, aligned))
+        first = last if has_wrist and not shrinks else 0
+        if excluded_by_balls(arm, laid, near, aligned, first, total > SMALL or not shrinks, weights):
             continue
-        ways, straight = 1, False
-        if has_wrist:
-            ways, straight = wrist_turns(arm, laid, centre, width, aligned, 1, turned)
-            if ways == 0:
-                continue
-            for k in range(3):
-                start[wiring[last + k, COLUMN]] = turned[0, k]
-        straight = wrist[1] == SPLIT or (bends and straight)
-        alone = has_wrist and not (straight and whole < FIRST_ORDER)
+        alone, left = has_wrist and not (straight and whole < FIRST_ORDER), 1.0
         if total < FIRST_ORDER:
             cut = last - 1 if alone else middle_joint(arm, laid.half, S, whole)
             b = to_first_order(arm, laid, near, aligned, cut, alone, rows, columns)
             if separated(columns, b, width, way):
                 continue
-            left = contracted(columns, b, centre, width, system) if shrinks else 1.0
+            left = contracted(columns, b, 3 if alone else 6, centre, width, system) if shrinks else 1.0
             if left == 0.0:
                 continue
-            if left < SHRUNK:
-                put(centre, width, waiting[count])
+            if left < SHRUNK and widest(width, splits, 1, least) >= 0:
+                put(centre, width, box)
                 count += 1
                 continue
+        if has_wrist:
+            if wrist_turns(arm, laid, start, box[n:], aligned, 1, turned) == 0:
+                continue
+            for k in range(3):
+                start[wiring[last + k, COLUMN]] = turned[0, k]
         if shrinks and has_wrist and wiring[0, ROTATES] == 1:
-            if not first_joint_turned(arm, laid, near, waiting[count], centre, width, system[0]):
+            if not first_joint_turned(arm, laid, near, box, centre, width, system[0]):
                 continue
             weights[wiring[0, COLUMN]] = 0.0
         at = -1
@@ -140,9 +140,12 @@ def cover(
             if splits[c] == 1 and width[c] > least and (at < 0 or weights[c] > weights[at]):
                 at = c
         if at < 0 and bends and not straight:
-            box = waiting[count]
-            ways, _ = wrist_turns(arm, laid, box[:n], box[n:], aligned, 2, turned)
+            ways = wrist_turns(arm, laid, box[:n], box[n:], aligned, 2, turned)
             straight = ranges_widely(turned, ways, least)  # then its joints are split as if it might be straight
+            if straight and left < SHRUNK:
+                put(centre, width, box)
+                count += 1
+                continue
         if at < 0 and straight:
             at = widest(width, splits, 1, FINER * least)
             at = widest(width, splits, 0, least) if at < 0 else at

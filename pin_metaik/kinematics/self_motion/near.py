@@ -1,4 +1,4 @@
-"""What is near a curve: boxes of configurations, near one of its points, and configurations that are on it."""
+"""What is near a curve: boxes of configurations, near one of its points, and configurations near a line of points."""
 
 from __future__ import annotations
 
@@ -7,45 +7,50 @@ import numpy as np
 from pin_metaik.compiled import Floats, Ints, inline, jit
 from pin_metaik.kinematics.kernel.forward import FULL_TURN
 
+TOGETHER = 16  # points of a curve that are looked at one by one only near a box around them
+
 
 @inline
-def is_within(box: Floats, x: Floats, multi_turn: Ints, side: float, distance: float) -> bool:
-    """Whether the far side of a box (2 m,), or its near one (``side`` -1), is so near to x (n,) in each coordinate."""
+def is_within(box: Floats, x: Floats, half: Floats | None, multi_turn: Ints, side: float, distance: float) -> bool:
+    """Whether the far side of a box (2 m,), or its near one (``side`` -1), is so near to x (n,) in each coordinate.
+
+    With half widths (n,) of another box around x: whether it may be so near to a point of that.
+    """
     m = box.shape[0] // 2
     for c in range(x.shape[0]):
         way = x[c] - box[c]
         if multi_turn[c] == 1:
             way -= FULL_TURN * np.round(way / FULL_TURN)
-        if abs(way) + side * box[m + c] > distance:
+        if abs(way) + side * box[m + c] - (0.0 if half is None else half[c]) > distance:
             return False
     return True
 
 
 @inline
-def is_on(x: Floats, a: Floats, b: Floats, multi_turn: Ints, same: float) -> bool:
-    """Whether x (n,) is so near to the line from a to b (n,) in every coordinate."""
+def is_near_line(x: Floats, a: Floats, b: Floats, multi_turn: Ints, same: float, copied: Floats) -> tuple[bool, float]:
+    """Whether x (n,) is so near to the line from a to b (n,) in every coordinate, and where on it, from 0 to 1.
+
+    ``copied`` (n,) gets the copy of x by whole turns that is nearest to a.
+    """
     along = length = 0.0
     for c in range(x.shape[0]):
-        way, step = x[c] - a[c], b[c] - a[c]
-        if multi_turn[c] == 1:
-            way -= FULL_TURN * np.round(way / FULL_TURN)
-        along += way * step
-        length += step * step
+        turns = np.round((x[c] - a[c]) / FULL_TURN) if multi_turn[c] == 1 else 0.0
+        copied[c] = x[c] - FULL_TURN * turns
+        along += (copied[c] - a[c]) * (b[c] - a[c])
+        length += (b[c] - a[c]) ** 2
     share = min(max(along / length, 0.0), 1.0) if length > 0.0 else 0.0
     for c in range(x.shape[0]):
-        way = x[c] - a[c] - share * (b[c] - a[c])
-        if multi_turn[c] == 1:
-            way -= FULL_TURN * np.round(way / FULL_TURN)
-        if abs(way) > same:
-            return False
-    return True
+        if abs(copied[c] - a[c] - share * (b[c] - a[c])) > same:
+            return False, share
+    return True, share
 
 
 @jit("b1(f8[::1], f8[:,::1], i8[::1], f8)")
-def is_on_curve(x: Floats, X: Floats, multi_turn: Ints, same: float) -> bool:
+def is_near_curve(x: Floats, X: Floats, multi_turn: Ints, same: float) -> bool:
     """Whether x (n,) is so near to the line through points X (p, n)."""
+    copied = np.empty(x.shape[0])
     for i in range(X.shape[0] - 1):  # noqa: SIM110  any(...) takes a generator, which numba does not
-        if is_on(x, X[i], X[i + 1], multi_turn, same):
+        if is_near_line(x, X[i], X[i + 1], multi_turn, same, copied)[0]:
             return True
     return False
 
@@ -53,9 +58,19 @@ def is_on_curve(x: Floats, X: Floats, multi_turn: Ints, same: float) -> bool:
 @jit("void(f8[:,::1], f8[:,::1], i8[::1], f8, f8, i8[::1])")
 def mark_near(boxes: Floats, X: Floats, multi_turn: Ints, side: float, distance: float, near: Ints) -> None:
     """Mark with 1 the boxes (k, 2 m) whose far or near side is so near to a point X (p, n); see ``is_within``."""
-    for k in range(boxes.shape[0]):
-        if near[k] == 0:
-            for i in range(X.shape[0]):
-                if is_within(boxes[k], X[i], multi_turn, side, distance):
+    p, n = X.shape
+    middle, half = np.empty(n), np.empty(n)  # of a box around some points
+    for first in range(0, p, TOGETHER):
+        last = min(first + TOGETHER, p)
+        for c in range(n):
+            low = high = X[first, c]
+            for i in range(first + 1, last):
+                low, high = min(low, X[i, c]), max(high, X[i, c])
+            middle[c], half[c] = 0.5 * (low + high), 0.5 * (high - low)
+        for k in range(boxes.shape[0]):
+            if near[k] == 1 or not is_within(boxes[k], middle, half, multi_turn, side, distance):
+                continue
+            for i in range(first, last):
+                if is_within(boxes[k], X[i], None, multi_turn, side, distance):
                     near[k] = 1
                     break

@@ -200,8 +200,8 @@ def comes_back(x: Floats, before: Floats, first: Floats, start: Floats, periodic
 
 
 @shared
-def trace_from(
-    block: Floats,
+def trace(
+    arm: Arm,
     goals: Floats,
     rows: Ints | None,
     bounds: Bounds,
@@ -214,8 +214,27 @@ def trace_from(
     curve: CurveScratch,
     work: Scratch,
 ) -> tuple[int, int, int, int]:
-    """``trace`` in room that was made for it."""
-    arm, n, spent, periodic = unpack(block).arm, x0.shape[0], 0, bounds.multi_turn
+    """Follow the curve from a point on it.
+
+    Args:
+        arm: The chain.
+        goals: (T, GOAL).
+        rows: (n - 1, 2) what counts of them; None for one tip's whole pose.
+        bounds: Limits of the coordinates, and 1 for those without, which a whole turn brings back.
+        x0: (n,) the point.
+        way: 1 or -1: along the tangent, or against it.
+        longest: Length of a step at most.
+        most: Evaluations after which no step begins; one takes up to 14.
+        points: (k, n) gets points on the curve, x0 first.
+        tangents: (k, n) gets the tangents there; the first one is given.
+        curve: Scratch.
+        work: Scratch.
+
+    Returns:
+        How many points; how the curve ends; twice the coordinate that is at a limit there, and 1 more if that is its
+        upper one; evaluations.
+    """
+    n, spent, periodic = x0.shape[0], 0, bounds.multi_turn
     tangent, before, trial = curve.tangent, curve.before, curve.trial
     for c in range(n):
         points[0, c], tangent[c] = x0[c], way * tangents[0, c]
@@ -278,50 +297,6 @@ def trace_from(
         last_h = h
         h = min(1.5 * h, longest) if first < 0.3 * OFF * h else h
     return count, LONG, -1, spent
-
-
-@jit(
-    "UniTuple(i8, 4)(f8[::1], f8[:,::1], i8[:,::1]?, f8[::1], f8[::1], i8[::1], f8[::1], f8, f8, i8, f8[:,::1],"
-    "f8[:,::1])"
-)
-def trace(
-    block: Floats,
-    goals: Floats,
-    rows: Ints | None,
-    lower: Floats,
-    upper: Floats,
-    periodic: Ints,
-    x0: Floats,
-    way: float,
-    longest: float,
-    most: int,
-    points: Floats,
-    tangents: Floats,
-) -> tuple[int, int, int, int]:
-    """Follow the curve from a point on it.
-
-    Args:
-        block: The chain.
-        goals: (T, GOAL).
-        rows: (n - 1, 2) what counts of them; None for one tip's whole pose.
-        lower: (n,) limits.
-        upper: (n,)
-        periodic: (n,) 1 for a coordinate without limits that a whole turn brings back.
-        x0: (n,) the point.
-        way: 1 or -1: along the tangent, or against it.
-        longest: Length of a step at most.
-        most: Evaluations after which no step begins; one takes up to 14.
-        points: (k, n) gets points on the curve, x0 first.
-        tangents: (k, n) gets the tangents there; the first one is given.
-
-    Returns:
-        How many points; how the curve ends; twice the coordinate that is at a limit there, and 1 more if that is its
-        upper one; evaluations.
-    """
-    S, n, _ = sizes_of(block)
-    curve, work = curve_scratch(n), scratch_for(n, rows, S)
-    bounds = Bounds(lower, upper, periodic)
-    return trace_from(block, goals, rows, bounds, x0, way, longest, most, points, tangents, curve, work)
 
 
 @shared
