@@ -8,7 +8,8 @@ than 5 s, and memory above 1 GiB beyond what the process has when it begins.
 
 All readers go on together, part by part, in as many processes as ``--workers``. With ``--kept`` each part is written to
 a file when it is done, and not done again while the sources are the same; with ``--earlier`` readers that these sources
-have not read count as earlier ones read them, and the page says which. With ``--minutes`` no part begins later.
+have not read count as earlier ones read them, and the page says which. With ``--after`` the numbers after those that a
+page counts are read, and the counts are added. With ``--minutes`` no part begins later.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import contextlib
 import json
 import math
 import os
+import re
 import tempfile
 import time
 import traceback
@@ -39,6 +41,7 @@ from sections import conditions
 import pin_metaik as mik
 from pin_metaik.compiled import ahead
 
+DIGESTS = "Digests of the sources:"
 LATE = 5.0  # s of processor time; a call that takes longer hangs
 SILENT = 120.0  # s after which a call that nothing is heard of is ended
 ROOM = 1 << 30  # bytes that reading may take
@@ -172,16 +175,17 @@ class Kept:
                 file.write(json.dumps([self.sources, part, asdict(counts)]) + "\n")
 
 
-def all_counted(asked: dict[str, int], seed: int, minutes: float, workers: int, kept: Kept) -> dict[str, Counts]:
-    """Counts of each reader; parts that are kept are not read again."""
+def all_counted(asked: dict[str, range], minutes: float, workers: int, kept: Kept) -> dict[str, Counts]:
+    """Counts of each reader for inputs of these numbers; parts that are kept are not read again."""
     ends = time.monotonic() + 60.0 * minutes
     readers()  # makes good files once, for all workers
     parts = [
-        (name, seed + first, min(SHARE, count - first))
-        for name, count in asked.items()
-        for first in range(0, count, SHARE)
+        (name, first, min(SHARE, numbers.stop - first))
+        for name, numbers in asked.items()
+        for first in range(numbers.start, numbers.stop, SHARE)
     ]
-    waiting = sorted((part for part in parts if part not in kept.parts), key=lambda part: part[1])
+    share = {part: (part[1] - asked[part[0]].start) / len(asked[part[0]]) for part in parts}
+    waiting = sorted((part for part in parts if part not in kept.parts), key=share.__getitem__)
     with ProcessPoolExecutor(workers, get_context("fork")) as pool:
         futures = [pool.submit(_part, part, ends) for part in waiting]
         for future in track(as_completed(futures), "parts", len(futures), transient=True):
@@ -192,7 +196,16 @@ def all_counted(asked: dict[str, int], seed: int, minutes: float, workers: int, 
     total = {name: Counts() for name in asked}
     for part in parts:
         total[part[0]] += kept.parts.get(part, Counts())
-    return {name: counts for name, counts in total.items() if counts.inputs}
+    return total
+
+
+def counted_on(page: Path) -> tuple[dict[str, Counts], str]:
+    """The counts of each reader on a page that was written before, and its line about the sources."""
+    text, counts = page.read_text(encoding="utf-8"), {}
+    for row in re.findall(r"^\| ([^|]+) \|((?: [0-9,]+ \|)+) ([0-9.]+) \|$", text, re.MULTILINE):
+        numbers = [int(cell.replace(",", "")) for cell in row[1].strip(" |").split("|")]
+        counts[row[0]] = Counts(numbers[0], *numbers[-3:-1], longest=float(row[2]))
+    return counts, next(line for line in text.splitlines() if line.startswith(DIGESTS))
 
 
 def _part(part: Part, ends: float) -> tuple[Part, Counts | None]:
@@ -201,21 +214,23 @@ def _part(part: Part, ends: float) -> tuple[Part, Counts | None]:
     return part, None if time.monotonic() > ends else fuzz(readers()[name], range(first, first + count))
 
 
-def page(counts: dict[str, Counts], by: dict[str, str]) -> Iterator[str]:
-    """The page, paragraph by paragraph."""
+def page(counts: dict[str, Counts], before: dict[str, Counts], by: dict[str, str], earlier: str) -> Iterator[str]:
+    """The page, paragraph by paragraph: counts of this run, and of those before it."""
     yield "# Odd files and command lines"
     yield conditions()
     yield (
         "*Refused*: an error of the family of `MetaIKError`, in words that can be printed. *Faults*: all other "
         f"exceptions, processes that end, calls of more than {LATE:g} s, more than 1 GiB of memory."
     )
-    table = ["| what is read | inputs | read | refused | faults | longest, s |", "|---|---:|---:|---:|---:|---:|"]
-    for name, c in counts.items():
-        cells = f"{c.inputs:,} | {c.read:,} | {c.refused:,} | {sum(c.faults.values()):,} | {c.longest:.2f}"
-        table.append(f"| {name} | {cells} |")
-    total = [sum(getattr(c, key) for c in counts.values()) for key in ("inputs", "read", "refused")]
-    faults = sum(sum(c.faults.values()) for c in counts.values())
-    table.append(f"| all | {' | '.join(f'{n:,}' for n in (*total, faults))} | |")
+    table = [
+        "| what is read | inputs | of them now | read | refused | faults | longest, s |",
+        "|---" + "|---:" * 6 + "|",
+    ]
+    both = {name: before.get(name, Counts()) + counts.get(name, Counts()) for name in {**before, **counts}}
+    for name, c in both.items():
+        now = counts.get(name, Counts()).inputs
+        table.append(f"| {name} | {cells(c, now)} | {c.longest:.2f} |")
+    table.append(f"| all | {cells(sum(both.values(), Counts()), sum(c.inputs for c in counts.values()))} | |")
     yield "\n".join(table)
     said = [f"- {name}: {count} x `{what}`" for name, c in counts.items() for what, count in c.faults.items()]
     if said:
@@ -225,7 +240,12 @@ def page(counts: dict[str, Counts], by: dict[str, str]) -> Iterator[str]:
         read_by.setdefault(by[name], []).append(name)
     usual = max(read_by, key=lambda digest: len(read_by[digest]))
     other = "".join(f"; {digest}: *{'*, *'.join(names)}*" for digest, names in read_by.items() if digest != usual)
-    yield f"Digests of the sources: {usual}{other}."
+    yield f"{DIGESTS} {usual}{other}." + (f" Before: {earlier}" if earlier else "")
+
+
+def cells(counts: Counts, now: int) -> str:
+    """The counts of a row of the table."""
+    return f"{counts.inputs:,} | {now:,} | {counts.read:,} | {counts.refused:,} | {sum(counts.faults.values()):,}"
 
 
 def main() -> None:
@@ -238,21 +258,26 @@ def main() -> None:
     parser.add_argument("--only", nargs="+", default=[""], help="readers whose name holds one of these")
     parser.add_argument("--workers", type=int, default=2, help="processes that read at once")
     parser.add_argument("--kept", type=Path, help="file that finished parts are kept in")
+    parser.add_argument("--after", type=Path, help="page of an earlier run that this one goes on from")
     parser.add_argument("--earlier", action="store_true", help="count readers as other sources read them, if need be")
     parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".md"))
     given = parser.parse_args()
     out, kept = given.out.absolute(), Kept(given.kept and given.kept.absolute(), given.earlier)
+    before, earlier = counted_on(given.after) if given.after else ({}, "")
     loops, _ = ahead.versions()
     for _ in ahead.each(ahead.Version.compile, [loop for loop in loops if not loop.ready]):
         pass  # what is compiled when it is first called counts as late
     with elsewhere():
         asked = {
-            name: given.inputs if one.fast else given.slow
+            name: range(given.seed + before.get(name, Counts()).inputs, given.seed + wanted)
             for name, one in readers().items()
             if any(some in name for some in given.only)
+            for wanted in [given.inputs if one.fast else given.slow]
         }
-        counts = all_counted(asked, given.seed, given.minutes, given.workers, kept)
-    out.write_text("\n\n".join(page(counts, kept.by)) + "\n", encoding="utf-8")
+        asked = {name: numbers for name, numbers in asked.items() if numbers}
+        counts = all_counted(asked, given.minutes, given.workers, kept)
+    counts = {name: some for name, some in counts.items() if some.inputs}
+    out.write_text("\n\n".join(page(counts, before, kept.by, earlier)) + "\n", encoding="utf-8")
 
 
 @contextlib.contextmanager
