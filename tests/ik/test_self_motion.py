@@ -66,6 +66,7 @@ def test_two_curves_that_are_very_near_to_each_other_are_told_apart(bend: float)
                 bent -= np.linalg.pinv(J.T, rcond=1e-9) @ error
             assert side * bent[3] > 0.5 * bend
             assert np.linalg.norm(error) < 1e-12
+            assert all((np.diff(curve.t) > 0.0).all() for curve in motions)
             if chain.limits.contains(bent):
                 assert motions.nearest(chain.q(bent)).value < 1e-4
 

@@ -83,9 +83,9 @@ def add(x: Floats, tangent: Floats, count: int, points: Floats, tangents: Floats
     if count > 0:
         for c in range(x.shape[0]):
             length += (x[c] - points[count - 1, c]) ** 2
-        if length == 0.0:
-            return count
         length = t[count - 1] + math.sqrt(length)
+        if length == t[count - 1]:
+            return count
     copy(x, points[count])
     copy(tangent, tangents[count])
     t[count] = length
