@@ -16,7 +16,7 @@ from pin_metaik.cli.versions import print_json
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.kinematics import Chain
 from pin_metaik.output import writable
-from pin_metaik.robots import RobotName, load_robot, robot_names, write_urdfs
+from pin_metaik.robots import RobotName, load_robot, named_robots, write_urdfs
 
 WIDE = 150  # columns for files and pipes, which have no width
 MANY = 9
@@ -34,12 +34,11 @@ def robots(
     There are two numbers of joints: all of the model, and those that move the tip. The last columns name the methods
     (`closed form`, `boxes`, `count`) that prove a pose unreachable, or prove that all solutions of a pose are found.
     """
-    named = [
-        robot
-        for robot in robot_names()
-        if all(word.lower() in f"{robot.name} {robot.source} {robot.frame}".lower() for word in words or ())
+    rows = [
+        {"robot": name.name, "source": name.source, **known(name, Chain(robot.model, robot.frame))}
+        for name, robot in named_robots()
+        if all(word.lower() in f"{name.name} {name.source} {name.frame}".lower() for word in words or ())
     ]
-    rows = [{"robot": robot.name, "source": robot.source, **known(robot)} for robot in named]
     if as_json:
         print_json({"robots": rows})
         return
@@ -50,17 +49,16 @@ def robots(
     Console(width=None if sys.stdout.isatty() else WIDE).print(table)
 
 
-def known(robot: RobotName) -> dict[str, object]:
+def known(name: RobotName, chain: Chain) -> dict[str, object]:
     """Numbers of joints, tip, whether there is a closed form, and what proves the two kinds of answers."""
-    chain = Chain(load_robot(robot).model, robot.frame)
     closed = len(chain.form) > 0
     unreachable = "closed form" if closed else "boxes" if chain.n < MANY else "little"
     complete_by = {6: "count or boxes", 7: "boxes, as curves"}
     every = "closed form" if closed else "boxes" if chain.n < 6 else complete_by.get(chain.n, "none")
     return {
-        "joints": robot.dof,
+        "joints": name.dof,
         "joints_to_tip": chain.n,
-        "tip": robot.frame,
+        "tip": name.frame,
         "closed_form": closed,
         "unreachable_proved_by": unreachable,
         "all_solutions_proved_by": every,

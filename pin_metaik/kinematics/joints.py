@@ -208,16 +208,16 @@ def _composite(model: pin.Model, joint: int, kind: pin.JointModelComposite) -> P
 
 def _check(model: pin.Model, joint: int, driver: int, parts: Parts) -> None:
     """See that turns and slides move a joint as Pinocchio does."""
-    data, x = model.createData(), TRIED * np.arange(1, 1 + len(parts.names)) / len(parts.names)
+    kind, x = model.joints[joint], TRIED * np.arange(1, 1 + len(parts.names)) / len(parts.names)
     entries = parts.entries if joint == driver else parts_of(model, driver).entries
     q = pin.neutral(model)
     first = model.joints[driver].idx_q
     q[first : first + model.joints[driver].nq] = list(_written(entries, x.tolist()))
-    pin.forwardKinematics(model, data, q)
-    placement = pin.SE3.Identity()
+    data, placement = kind.createData(), pin.SE3.Identity()
+    kind.calc(data, q)
     for motion in parts.motions:
         placement = placement * motion.move(x[motion.part])
-    if not data.joints[joint].M.isApprox(placement, EXACT):
+    if not data.M.isApprox(placement, EXACT):
         raise _unsupported(model, joint, "does not move along and about fixed axes")
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
@@ -125,10 +125,17 @@ class RobotName(str):
 
 
 def robot_names() -> list[RobotName]:
-    """Every robot that ``load_robot`` knows by name, the catalogue first; builds all models, in half a second."""
-    sources = {"catalogue": list(catalogue()), "example-robot-data": list(example_robots())}
-    loaded = ((_loaded(name, None, "fixed", True), source) for source, names in sources.items() for name in names)
-    return [RobotName(robot.name, source, robot.model.nv, robot.frame) for robot, source in loaded]
+    """Every robot that ``load_robot`` knows by name, the catalogue first; builds all models, in a second."""
+    return [name for name, _ in named_robots()]
+
+
+def named_robots() -> Iterator[tuple[RobotName, Robot]]:
+    """Every robot that ``load_robot`` knows by name, the catalogue first, and what is known of its name."""
+    sources = (("catalogue", [*catalogue()]), ("example-robot-data", [*example_robots()]))
+    for source, names in sources:
+        for name in names:
+            robot = _loaded(name, None, "fixed", True)
+            yield RobotName(robot.name, source, robot.model.nv, robot.frame), robot
 
 
 @checked_as(InvalidModel)
