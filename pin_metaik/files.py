@@ -113,7 +113,7 @@ def plain_values(content: Any, size: int, place: object, error: Error, kind: str
 def _too_large(value: object) -> bool:
     """Whether it is a finite number that no float holds."""
     if isinstance(value, Decimal):
-        return value.is_finite() and abs(value) > LARGEST
+        return value.is_finite() and value.copy_abs() > LARGEST
     return isinstance(value, int) and abs(value) > LARGEST
 
 

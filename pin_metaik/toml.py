@@ -46,6 +46,8 @@ def toml_values(
         content = tomllib.loads(text, parse_float=number)
     except (ValueError, RecursionError) as reason:
         raise error(f"{place} is not TOML: {reason}") from None
+    except ArithmeticError:  # of a Decimal whose exponent has more than 18 digits
+        raise error(f"{place} is not TOML that can be read: it has a number of more than 308 digits") from None
     plain_values(content, len(text), place, error, "TOML")
     return content
 

@@ -37,7 +37,7 @@ from pin_metaik.errors import (
 from pin_metaik.gui.look.pieces import pieces_of
 from pin_metaik.mobile.motion.trajectory import Phase, Trajectory, load_trajectory
 from pin_metaik.mobile.world.images import read_image
-from pin_metaik.stewart import read_trajectory
+from pin_metaik.stewart import read_mechanism, read_trajectory
 from tests.compare.suites import SMALL
 
 INPUTS = 25  # of each reader; hundreds of thousands in the benchmark
@@ -82,6 +82,13 @@ def test_a_table_with_numbers_beyond_all_robots_is_refused(tmp_path: Path) -> No
     (tmp_path / "r.toml").write_text(text.replace(number, huge, 1))
     with pytest.raises(InvalidTable, match="is beyond 1e"):
         mik.load_robot(tmp_path / "r.toml")
+
+
+@pytest.mark.parametrize("number", ["1e400", "-1e9999999", f"1e{'9' * 18}", f"1e{'9' * 55}"])
+def test_a_decimal_that_no_float_holds_is_refused(number: str, tmp_path: Path) -> None:
+    (tmp_path / "m.toml").write_text(f'name = "m"\nradius = {number}\n')
+    with pytest.raises(InvalidTable, match="a number of more than 308 digits"):
+        read_mechanism(tmp_path / "m.toml")
 
 
 def test_aliases_that_stand_for_billions_of_values_are_refused_at_once(tmp_path: Path) -> None:
