@@ -204,7 +204,8 @@ def counted_on(page: Path) -> tuple[dict[str, Counts], str]:
     text, counts = page.read_text(encoding="utf-8"), {}
     for row in re.findall(r"^\| ([^|]+) \|((?: [0-9,]+ \|)+) ([0-9.]+) \|$", text, re.MULTILINE):
         numbers = [int(cell.replace(",", "")) for cell in row[1].strip(" |").split("|")]
-        counts[row[0]] = Counts(numbers[0], *numbers[-3:-1], longest=float(row[2]))
+        faults = {"on the page before": numbers[-1]} if numbers[-1] else {}
+        counts[row[0]] = Counts(numbers[0], numbers[-3], numbers[-2], faults, float(row[2]))
     return counts, next(line for line in text.splitlines() if line.startswith(DIGESTS))
 
 
