@@ -16,7 +16,8 @@ from pin_metaik.cli.versions import print_json
 from pin_metaik.errors import InvalidSetting
 from pin_metaik.kinematics import Chain
 from pin_metaik.output import writable
-from pin_metaik.robots import RobotName, load_robot, named_robots, write_urdfs
+from pin_metaik.robots import RobotName, load_robot, write_urdfs
+from pin_metaik.robots.robot import named_robots
 
 WIDE = 150  # columns for files and pipes, which have no width
 MANY = 9

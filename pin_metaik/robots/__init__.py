@@ -2,7 +2,7 @@
 
 from pin_metaik.robots.description import Description, description_of
 from pin_metaik.robots.dh import DHRow, DHTable, Placement
-from pin_metaik.robots.robot import Robot, RobotName, load_robot, named_robots, robot_names
+from pin_metaik.robots.robot import Robot, RobotName, load_robot, robot_names
 from pin_metaik.robots.table import read_table
 from pin_metaik.robots.urdf import to_urdf, write_urdfs
 
@@ -15,7 +15,6 @@ __all__ = [
     "RobotName",
     "description_of",
     "load_robot",
-    "named_robots",
     "read_table",
     "robot_names",
     "to_urdf",
