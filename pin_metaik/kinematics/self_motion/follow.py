@@ -6,10 +6,16 @@ import math
 
 from pin_metaik.compiled import Floats, Ints, inline, jit, shared
 from pin_metaik.kinematics.kernel.forward import copy, sizes_of, unpack
-from pin_metaik.kinematics.kernel.goals import evaluate, evaluate_pose
 from pin_metaik.kinematics.kernel.layout import Arm, Bounds
 from pin_metaik.kinematics.kernel.scratch import Scratch, scratch_for
-from pin_metaik.kinematics.self_motion.trace import CLOSED, CurveScratch, curve_scratch, put_on_curve, trace
+from pin_metaik.kinematics.self_motion.trace import (
+    CLOSED,
+    CurveScratch,
+    curve_scratch,
+    put_on_curve,
+    trace,
+    write_equations,
+)
 
 
 @inline
@@ -54,14 +60,8 @@ def put_solution(
     arm: Arm, goals: Floats, rows: Ints | None, x: Floats, bounds: Bounds, curve: CurveScratch, work: Scratch
 ) -> bool:
     """Put a solution x (n,) onto the curve, inside its bounds; ``ahead`` gets the tangent. False in a singularity."""
-    if rows is None:
-        evaluate_pose(arm, goals[0], x, work)
-    else:
-        evaluate(arm, goals, rows, x, work, False)
+    write_equations(arm, goals, rows, x, curve.system, work)
     n, tangent = x.shape[0], curve.tangent
-    for a in range(n - 1):
-        for c in range(n):
-            curve.system[a, c] = work.J[c, a]
     if not null_direction(curve.system, curve.before, tangent):
         return False
     size = 0.0

@@ -88,11 +88,14 @@ def mark_all_on(
     """``mark_on`` in room that was made for it; ``copied`` (n,) is the copy of a solution by whole turns."""
     arm = unpack(block).arm
     for k in range(X.shape[0]):
+        if on[k] == 1:
+            continue
         for i in range(points.shape[0] - 1):
             a, b = points[i], points[i + 1]
-            near, share = is_near_line(X[k], a, b, multi_turn, NEAR, copied) if on[k] == 0 else (False, 0.0)
+            near, share = is_near_line(X[k], a, b, multi_turn, NEAR, copied)
             if near and is_on_piece(arm, goals, rows, copied, a, b, tangents[i : i + 2], share, curve, work):
                 on[k] = 1
+                break
 
 
 @jit("void(f8[::1], f8[:,::1], i8[:,::1]?, i8[::1], f8[:,::1], f8[:,::1], f8[:,::1], i8[::1])")

@@ -80,6 +80,20 @@ def solve_system(M: Floats) -> bool:
 
 
 @inline
+def write_equations(arm: Arm, goals: Floats, rows: Ints | None, x: Floats, M: Floats, work: Scratch) -> None:
+    """Write what the targets ask of a step from x (n,) into the first n - 1 rows of M (n, n + 2)."""
+    if rows is None:
+        evaluate_pose(arm, goals[0], x, work)
+    else:
+        evaluate(arm, goals, rows, x, work, False)
+    n = x.shape[0]
+    for a in range(n - 1):
+        for c in range(n):
+            M[a, c] = work.J[c, a]
+        M[a, n], M[a, n + 1] = -work.r[a], 0.0
+
+
+@inline
 def correction(
     arm: Arm,
     goals: Floats,
@@ -94,15 +108,8 @@ def correction(
 
     ``step`` and ``ahead`` are written; the tangent points as ``last`` does.
     """
-    if rows is None:
-        evaluate_pose(arm, goals[0], x, work)
-    else:
-        evaluate(arm, goals, rows, x, work, False)
+    write_equations(arm, goals, rows, x, curve.system, work)
     M, n = curve.system, x.shape[0]
-    for a in range(n - 1):
-        for c in range(n):
-            M[a, c] = work.J[c, a]
-        M[a, n], M[a, n + 1] = -work.r[a], 0.0
     for c in range(n):
         M[n - 1, c] = last[c]
     M[n - 1, n], M[n - 1, n + 1] = rest, 1.0
