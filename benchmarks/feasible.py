@@ -31,6 +31,12 @@ FAMILIES = (
     "some at zero",
     "singular",
 )
+MEETING = {  # where the axis before is met, joints counted from either end
+    "wrist at the tip": (-2, -1),
+    "wrist at the base": (1, 2),
+    "shoulder and wrist": (2, -2, -1),
+    "wrist and shoulder": (1, 2, -2),
+}
 SINGULAR = 8  # singular configurations of an arm, found once
 
 
@@ -65,23 +71,26 @@ def random_chain(rng: np.random.Generator) -> mik.Chain:
 
 
 def _random_model(rng: np.random.Generator) -> tuple[pin.Model, list[tuple[int, int]]]:
-    model, n, kind = pin.Model(), int(rng.integers(1, 10)), rng.choice(["any", "wrist at the tip", "wrist at the base"])
-    parent, followers = 0, []
+    kind = rng.choice(["any", "wrist at the tip", "wrist at the base", "shoulder and wrist", "wrist and shoulder"])
+    model, n, parent, followers = pin.Model(), int(rng.integers(1, 10)), 0, []
+    meeting = MEETING.get(str(kind), ())
+    if "shoulder" in kind:
+        n = 7
     for i in range(n):
         turn = TURNS[rng.integers(len(TURNS))] if rng.random() < 0.6 else pin.exp3(rng.normal(size=3))
         if rng.random() < 0.2:
             turn = turn @ pin.exp3(1e-3 * rng.normal(size=3))
         way = 0.3 * rng.normal(size=3) * (rng.random(3) < 0.5)
-        if (kind == "wrist at the tip" and i > n - 3) or (kind == "wrist at the base" and 0 < i < 3):
-            way = np.zeros(3)
-        slides = rng.random() < 0.15
+        if i in meeting or i - n in meeting:
+            way = np.zeros(3) if rng.random() < 0.9 else 2e-6 * rng.normal(size=3)  # nearly
+        slides = rng.random() < (0.02 if "shoulder" in kind else 0.15)
         span = (0.2 if slides else 1.0) * rng.uniform(0.1, 3.2, 2)
         lower, upper = (-6.5, 6.5) if not slides and rng.random() < 0.2 else (-span[0], span[1])
         joint = (SLIDING if slides else TURNING)[rng.integers(3)]()
         bounds = (np.array([bound]) for bound in (10.0, 10.0, lower, upper))
         parent = model.addJoint(parent, joint, pin.SE3(np.array(turn), way), f"joint_{i}", *bounds)
         alike = [j for j in range(1, parent) if model.joints[j].shortname()[:12] == joint.shortname()[:12]]
-        if alike and rng.random() < 0.15:
+        if alike and rng.random() < (0.02 if "shoulder" in kind else 0.15):
             followers.append((parent, alike[0]))
     tip = pin.SE3(pin.exp3(rng.normal(size=3)), 0.2 * rng.normal(size=3))
     model.addFrame(pin.Frame("tip", parent, 0, tip, pin.FrameType.OP_FRAME))

@@ -38,7 +38,6 @@ from feasible import Feasible, feasible, random_chain, random_closed_form
 import pin_metaik as mik
 from pin_metaik.compare.cases.calibrated import measured
 from pin_metaik.kinematics.proofs.arm import WHOLE, Free, ProofArm, proof_arm
-from pin_metaik.kinematics.proofs.box_search import cover
 from pin_metaik.kinematics.proofs.closed_forms import ClosedFormProof
 
 CLOSED = ["ur5", "ur10", "rv7fl", "z1", "kinova", "puma560"]
@@ -48,6 +47,7 @@ OFF = "~"  # before a name: joints 1e-3 off their place
 NAMED = [*CLOSED, *(OFF + robot for robot in CLOSED), *OTHERS]
 FREE: list[Free] = [WHOLE, (True, False, False), (False, False, True), (True, True, True)]
 HALVINGS = 40
+ROOM = 16  # for the parts that one box may be taken into
 ROUNDING = 1e-9  # rad or m
 SHARE = 100_000  # boxes or targets of one part
 DEFAULT = 1e-5  # m and rad; tolerances of targets that are arrays
@@ -96,18 +96,18 @@ def halved(arm: ProofArm, target: Feasible, free: Free, rng: np.random.Generator
     for axis in axes:  # the free joints at the tip
         x = np.append(x, rng.uniform(-np.pi, np.pi))
         pose[:3, :3] = pose[:3, :3] @ pin.utils.rotate(axis, float(x[-1]))
-    asked = arm.target(pose, near, aligned)
+    asked, shrinking = arm.target(pose, near, aligned), arm.shrinking
     m = arm.whole.shape[1] // 2
     centre, width = arm.whole[0, :m].copy(), arm.whole[0, m:].copy()
     x = np.clip(x, centre - width, centre + width)
-    waiting, leaves, answers = np.empty((2, 2 * m)), np.empty((2, 2 * m)), []
+    waiting, leaves, answers = np.empty((ROOM, 2 * m)), np.empty((2, 2 * m)), []
     for _ in range(rng.integers(1, HALVINGS)):
         waiting[0] = np.append(centre, width)
-        looked, kept, left = cover(*arm.arrays, *asked, waiting, 1, 0.0, 1, leaves)
+        looked, kept, left = arm.cover(*arm.arrays, *asked, waiting, 1, 0.0, 1, leaves)
         answers.append(looked != 1 or (left == 0 and kept == 0))
         waiting[0] = np.append(centre, width)
         least = 10.0 ** rng.uniform(-4.0, 0.5)
-        looked, kept, left = cover(*arm.shrinking.arrays, *asked, waiting, 1, least, 1, leaves)
+        looked, kept, left = shrinking.cover(*shrinking.arrays, *asked, waiting, 1, least, 1, leaves)
         rest = np.concatenate([waiting[:left], leaves[:kept]])
         answers.append(looked != 1 or not (np.abs(rest[:, :m] - x) <= rest[:, m:] + ROUNDING).all(axis=1).any())
         c = rng.integers(m)

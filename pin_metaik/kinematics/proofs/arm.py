@@ -5,6 +5,7 @@ What a target leaves free becomes joints of its own at the tip: a position alone
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
@@ -104,10 +105,19 @@ class ProofArm:
         """The same arm, but boxes are shrunk around solutions, and tell of the joints of a wrist; see ``BoxArm``."""
         from pin_metaik.kinematics.proofs.box import BENT, FREE, SPLIT
 
-        has_wrist = self.arrays[7][0]
+        has_wrist, _, has_shoulder = self.arrays[7]
         own = int((self.arrays[1][-3:, COLUMN] < self.n).sum())
         how = FREE if not has_wrist or own == 0 else BENT if own == 3 else SPLIT
-        return replace(self, arrays=(*self.arrays[:7], np.array([has_wrist, how])))
+        return replace(self, arrays=(*self.arrays[:7], np.array([has_wrist, how, has_shoulder])))
+
+    @property
+    def cover(self) -> Callable[..., tuple[int, int, int]]:
+        """The loop that looks at its boxes; it takes ``arrays`` first."""
+        from pin_metaik.kinematics.proofs.box import BENT
+        from pin_metaik.kinematics.proofs.box_search import cover
+        from pin_metaik.kinematics.proofs.box_wrist_search import cover_with_wrist
+
+        return cover_with_wrist if self.arrays[7][1] == BENT else cover
 
     @property
     def movers(self) -> int:
@@ -151,15 +161,14 @@ def proof_arm(paths: ChainArrays, limits: Limits, tip: int, free: Free) -> Proof
         path = path.with_turn(n, free.index(True)) if sum(free) == 1 else path.with_wrist(n)
         turns = len(path.joints) - (last - first)
         lower, upper = np.append(lower, [-np.pi] * turns), np.append(upper, [np.pi] * turns)
-    wrist, backwards = _wrist(path, lower, upper), False
-    if wrist is None:
-        turned = path.reversed()
-        wrist = _wrist(turned, lower, upper)
-        if wrist is not None:
-            path, backwards = turned, True
+    ends = [_Meeting.of(way, lower, upper) for way in (path, path.reversed())]
+    backwards = ends[1].points > ends[0].points
+    path, meeting = (path.reversed(), ends[1]) if backwards else (path, ends[0])
     knots = _knots(path, lower, upper)
-    if wrist is not None:
-        knots[-3:] = wrist
+    if meeting.wrist is not None:
+        knots[-3:] = meeting.wrist
+    if meeting.shoulder is not None:
+        knots[1:3] = meeting.shoulder
     arrays = (
         np.ascontiguousarray(path.joints),
         np.ascontiguousarray(path.wiring),
@@ -167,8 +176,8 @@ def proof_arm(paths: ChainArrays, limits: Limits, tip: int, free: Free) -> Proof
         path.tip,
         lower,
         upper,
-        np.array([_reach(path, knots, lower, upper), 0.0 if wrist is None else _miss(path, knots)]),
-        np.array([int(wrist is not None), 0]),
+        np.array([_reach(path, knots, lower, upper), *meeting.misses(path, knots)]),
+        np.array([int(meeting.wrist is not None), 0, int(meeting.shoulder is not None)]),
     )
     return ProofArm(arrays, backwards, n)
 
@@ -202,31 +211,58 @@ def _knots(path: Path, lower: Floats, upper: Floats) -> Floats:
     return knots
 
 
-def _wrist(path: Path, lower: Floats, upper: Floats) -> Floats | None:
-    """Where on the last three axes (3,) they meet, if they do and nothing else follows their coordinates."""
-    S, columns = len(path.joints), path.wiring[:, COLUMN]
-    own = S > 3 and path.wiring[-3:, ROTATES].all() and all((columns == c).sum() == 1 for c in columns[-3:])
-    if not own:
-        return None
-    frames = path.frames(lower + 0.37 * (upper - lower))[-4:-1]
+@dataclass(frozen=True)
+class _Meeting:
+    """Where axes of a path meet.
+
+    Attributes:
+        wrist: Where on the last three axes (3,), if they do and nothing else follows their coordinates.
+        shoulder: Where on axes 2 and 3 (2,), if there are four joints before a wrist and each turns by itself.
+    """
+
+    wrist: Floats | None
+    shoulder: Floats | None
+
+    @classmethod
+    def of(cls, path: Path, lower: Floats, upper: Floats) -> _Meeting:
+        """Look at them in a configuration that is nothing special."""
+        columns = path.wiring[:, COLUMN]
+        own = np.array([turns and (columns == c).sum() == 1 for c, turns in path.wiring])
+        frames, wrist, shoulder = path.frames(lower + 0.37 * (upper - lower)), None, None
+        if len(own) > 3 and own[-3:].all():
+            wrist = _meeting_of(frames[-4:-1])
+        if wrist is not None and len(own) == 7 and own.all():
+            shoulder = _meeting_of(frames[1:3])
+        return cls(wrist, shoulder)
+
+    @property
+    def points(self) -> int:
+        """How many there are."""
+        return int(self.wrist is not None) + int(self.shoulder is not None)
+
+    def misses(self, path: Path, knots: Floats) -> tuple[float, float]:
+        """How far (m) turns move the points of wrist and shoulder, as the axes do not quite meet."""
+        frames = path.frames(np.zeros(int(path.wiring[:, COLUMN].max()) + 1))[:-1]
+        points, of_wrist, of_shoulder = frames[:, :3, 3] + knots[:, None] * frames[:, :3, 2], 0.0, 0.0
+        if self.wrist is not None:
+            first, second = np.linalg.norm(np.diff(points[-3:], axis=0), axis=1)
+            of_wrist = float(4.0 * first + 2.0 * second)  # about axis 2, by twice the distance; about 3, by twice both
+        if self.shoulder is not None:
+            of_shoulder = float(2.0 * np.linalg.norm(points[2] - points[1]))
+        return of_wrist, of_shoulder
+
+
+def _meeting_of(frames: Floats) -> Floats | None:
+    """Where on the z axes of frames (k, 4, 4) they meet (k,), if they do and each points another way than the next."""
     axes, points = frames[:, :3, 2], frames[:, :3, 3]
     across = np.eye(3) - axes[:, :, None] * axes[:, None]
     where, _, _, singular = np.linalg.lstsq(across.sum(axis=0), np.einsum("kij,kj->i", across, points), rcond=None)
     off = np.linalg.norm(np.einsum("kij,kj->ki", across, where - points), axis=1)
-    # Each must turn the next: two that are parallel would be one.
-    turning = [np.linalg.norm(np.cross(axes[i], axes[i + 1])) > APART for i in range(2)]
-    if singular[-1] < APART or off.max() > MEET or not all(turning):
+    turning = np.linalg.norm(np.cross(axes[:-1], axes[1:]), axis=1) > APART  # two that are parallel would be one
+    if singular[-1] < APART or off.max() > MEET or not turning.all():
         return None
     met: Floats = np.einsum("ki,ki->k", where - points, axes)
     return met
-
-
-def _miss(path: Path, knots: Floats) -> float:
-    """How far (m) turns of a wrist, the last three joints, may move its first axis' point as the tip sees it."""
-    frames = path.frames(np.zeros(int(path.wiring[:, COLUMN].max()) + 1))[-4:-1]
-    points = frames[:, :3, 3] + knots[-3:, None] * frames[:, :3, 2]
-    first, second = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    return float(4.0 * first + 2.0 * second)  # about axis 2, by twice the distance; about axis 3, by twice both
 
 
 def _reach(path: Path, knots: Floats, lower: Floats, upper: Floats) -> float:

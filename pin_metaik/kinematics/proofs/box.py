@@ -20,6 +20,7 @@ from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES, SCALE
 from pin_metaik.kinematics.proofs.balls import chord, norm
 
 FREE, BENT, SPLIT = 1, 2, 3  # what becomes of a wrist; see ``BoxArm``
+PAD = 1e-12  # rad or m: rounding
 START = np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])  # the world, seen from the world
 
 
@@ -33,12 +34,13 @@ class BoxArm(NamedTuple):
         tip: (12,) placement of the tip in the last joint frame.
         lower: (n,) limits of the coordinates, finite, rad or m.
         upper: (n,).
-        reach: (2,) greatest distance of any point from the tip and from each other, m; and how far turns of the wrist
-            may move its point as the tip sees it, because its axes do not quite meet.
-        wrist: (2,) 1 if the last three axes meet, each with a coordinate of its own; then these are split last, if at
+        reach: (3,) greatest distance of any point from the tip and from each other, m; and how far turns of the wrist
+            may move its point as the tip sees it, and of a shoulder its own, because the axes do not quite meet.
+        wrist: (3,) 1 if the last three axes meet, each with a coordinate of its own; then these are split last, if at
             all. 0, or above if boxes are shrunk around solutions: ``FREE`` if nobody asks for the values of a wrist's
             joints, ``BENT`` if its two bends are told apart and it is split where it may be straight, and ``SPLIT`` if
-            it always is, once all other joints are short.
+            it always is, once all other joints are short. 1 if four joints are before it, the axes of the second and
+            third of which meet; see ``box_shoulder``.
     """
 
     joints: Floats
@@ -104,6 +106,28 @@ def times(M: Floats, v: Vector) -> Vector:
         M[1, 0] * v[0] + M[1, 1] * v[1] + M[1, 2] * v[2],
         M[2, 0] * v[0] + M[2, 1] * v[1] + M[2, 2] * v[2],
     )
+
+
+@inline
+def transposed_times(M: Floats, v: Vector) -> Vector:
+    """M' v for a matrix (3, 3)."""
+    return (
+        M[0, 0] * v[0] + M[1, 0] * v[1] + M[2, 0] * v[2],
+        M[0, 1] * v[0] + M[1, 1] * v[1] + M[2, 1] * v[2],
+        M[0, 2] * v[0] + M[1, 2] * v[1] + M[2, 2] * v[2],
+    )
+
+
+@inline
+def times_number(number: float, v: Vector) -> Vector:
+    """A vector that is so many times as long."""
+    return number * v[0], number * v[1], number * v[2]
+
+
+@inline
+def set_range(box: Floats, c: int, lower: float, upper: float) -> None:
+    """Write the range of one coordinate into a box (2 n,)."""
+    box[c], box[box.shape[0] // 2 + c] = 0.5 * (lower + upper), max(0.5 * (upper - lower), 0.0) + PAD
 
 
 @inline

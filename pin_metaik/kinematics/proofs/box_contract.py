@@ -14,16 +14,23 @@ from pin_metaik.compiled import Floats, inline, shared
 from pin_metaik.kinematics.kernel.closed_form import minus, vector
 from pin_metaik.kinematics.kernel.layout import COLUMN
 from pin_metaik.kinematics.proofs.balls import arc_from_to
-from pin_metaik.kinematics.proofs.box import BoxArm, Laid
+from pin_metaik.kinematics.proofs.box import PAD, BoxArm, Laid
 from pin_metaik.kinematics.proofs.box_linear import Equations
 from pin_metaik.kinematics.proofs.box_wrist import turns
 
 LEAST = 1e-3  # of tolerance and remainder: what a whole coordinate moves if the equations are to be solved for it
-PAD = 1e-12  # rad or m: rounding
 
 
 @shared
-def contracted(columns: Floats, b: Equations, equations: int, centre: Floats, width: Floats, system: Floats) -> float:
+def contracted(
+    columns: Floats,
+    b: Equations,
+    equations: int,
+    centre: Floats,
+    width: Floats,
+    system: Floats,
+    tied: Floats,
+) -> float:
     """Shrink a box to what the equations leave of it, in place.
 
     Args:
@@ -33,6 +40,8 @@ def contracted(columns: Floats, b: Equations, equations: int, centre: Floats, wi
         centre: (n,) of the box.
         width: (n,) its half widths.
         system: (9, n + 6) scratch.
+        tied: (n, 3) gets what the equations say of the coordinates in the box as it was: each is the first number, and
+            the second one times a number between -1 and 1, the same for all, within the third.
 
     Returns:
         What is left of the sum of the half widths that they are about, as a share; 0 if nothing can be in the box.
@@ -47,6 +56,7 @@ def contracted(columns: Floats, b: Equations, equations: int, centre: Floats, wi
     for c in range(n):
         low[c], high[c] = -width[c], width[c]
     rank = eliminated(system, E, width, solved)
+    free = tie_to_one(columns, rank, solved, width, tied)
     for r in range(rank):
         c = int(solved[r])
         slope = middle = place = turn = 0.0
@@ -61,14 +71,21 @@ def contracted(columns: Floats, b: Equations, equations: int, centre: Floats, wi
         if slope < 0.5:  # it is 1 but for rounding
             continue
         least = most = middle
+        along = rest = 0.0
         for j in range(n):
             if j != c:
                 share = 0.0
                 for k in range(E):
                     share += system[r, n + k] * columns[j, k]
+                if j == free:
+                    along = -share * width[j]
+                else:
+                    rest += abs(share) * width[j]
                 least -= max(share * low[j], share * high[j])
                 most -= min(share * low[j], share * high[j])
         spread = math.sqrt(place) + math.sqrt(turn)
+        if rest + spread < slope * width[c]:
+            tied[c, 0], tied[c, 1], tied[c, 2] = middle / slope, along / slope, (rest + spread) / slope + PAD
         low[c], high[c] = max(low[c], (least - spread) / slope - PAD), min(high[c], (most + spread) / slope + PAD)
         if low[c] > high[c]:
             return 0.0
@@ -83,6 +100,27 @@ def contracted(columns: Floats, b: Equations, equations: int, centre: Floats, wi
     return max(after / before, PAD) if before > 0.0 else 1.0
 
 
+@inline
+def tie_to_one(columns: Floats, rank: int, solved: Floats, width: Floats, tied: Floats) -> int:
+    """The widest coordinate that is not solved for, to which the others are tied; -1: there is none.
+
+    ``tied`` (n, 3) is written for all as if nothing was known but their half widths (n,); see ``contracted``.
+    """
+    free = -1
+    for c in range(width.shape[0]):
+        tied[c, 0], tied[c, 1], tied[c, 2] = 0.0, 0.0, width[c]
+        counts = False
+        for k in range(6):
+            counts = counts or columns[c, k] != 0.0
+        for r in range(rank):
+            counts = counts and int(solved[r]) != c
+        if counts and (free < 0 or width[c] > width[free]):
+            free = c
+    if free >= 0:
+        tied[free, 1], tied[free, 2] = width[free], 0.0
+    return free
+
+
 @shared
 def eliminated(system: Floats, E: int, width: Floats, solved: Floats) -> int:
     """Solve [A | I] (E, n + E) for coordinates that move much within their half widths (n,); for how many.
@@ -91,11 +129,11 @@ def eliminated(system: Floats, E: int, width: Floats, solved: Floats) -> int:
     """
     n = width.shape[0]
     for r in range(E):
-        at, column, largest = r, -1, LEAST
+        at, column, largest = r, -1, 0.0
         for i in range(r, E):
             for c in range(n):
-                size = abs(system[i, c]) * width[c]
-                if size > largest:
+                size = system[i, c] ** 2 * width[c]
+                if size > largest and abs(system[i, c]) * width[c] > LEAST:
                     at, column, largest = i, c, size
         if column < 0:
             return r
@@ -135,21 +173,3 @@ def first_joint_turned(
         return False
     centre[c], width[c] = 0.5 * (lower + upper), max(0.5 * (upper - lower), 0.0) + PAD
     return True
-
-
-@inline
-def ranges_widely(turned: Floats, ways: int, least: float) -> bool:
-    """Whether half the range of a wrist's joint, of which ``turned`` (2, 9) tells, is above ``least`` for some bend."""
-    for way in range(ways):
-        for k in range(3):
-            if turned[way, 6 + k] - turned[way, 3 + k] > 2.0 * least:
-                return True
-    return False
-
-
-@inline
-def bend(arm: BoxArm, turned: Floats, centre: Floats, width: Floats) -> None:
-    """Write the ranges of a wrist's joints, of which ``turned`` (9,) tells, into a box."""
-    for k in range(3):
-        c = arm.wiring[arm.wiring.shape[0] - 3 + k, COLUMN]
-        centre[c], width[c] = 0.5 * (turned[3 + k] + turned[6 + k]), 0.5 * (turned[6 + k] - turned[3 + k])

@@ -4,8 +4,8 @@ A box that a test excludes is done with; another is split in two, depth first, i
 from excluding most. When none is left, no configuration inside the limits reaches the target: that is proved. A box
 whose sides are all short is kept as a place to descend from. There is no randomness in it.
 
-Where all solutions are asked for, boxes are also shrunk around what may be in them, and of a wrist, whose joints are
-split last if at all, what is kept has the ranges: one box for each of the two ways to bend it.
+Where all solutions are asked for, boxes are also shrunk around what may be in them; those of an arm with a wrist have a
+loop of their own, ``box_wrist_search``.
 """
 
 from __future__ import annotations
@@ -13,12 +13,13 @@ from __future__ import annotations
 import numpy as np
 
 from pin_metaik.compiled import Floats, Ints, inline, jit
+from pin_metaik.kinematics.kernel.closed_form import vector
 from pin_metaik.kinematics.kernel.layout import COLUMN, ROTATES
-from pin_metaik.kinematics.proofs.box import BENT, SPLIT, BoxArm, laid_for, lay
+from pin_metaik.kinematics.proofs.box import SPLIT, BoxArm, laid_for, lay
 from pin_metaik.kinematics.proofs.box_balls import excluded_by_balls
-from pin_metaik.kinematics.proofs.box_contract import bend, contracted, first_joint_turned, ranges_widely
+from pin_metaik.kinematics.proofs.box_contract import contracted, first_joint_turned
 from pin_metaik.kinematics.proofs.box_linear import separated, to_first_order
-from pin_metaik.kinematics.proofs.box_wrist import may_be_straight, wrist_turns
+from pin_metaik.kinematics.proofs.box_wrist import back_of, moved, wrist_turns
 
 FIRST_ORDER = 3.0  # rad, sum of the half widths up to which the series is worth looking at
 SMALL = 0.5  # rad, the same sum, below which pairs of axes tell little that shrinking does not
@@ -92,7 +93,7 @@ def cover(
     laid = laid_for(S, last + 1 if has_wrist else S)
     for k in range(last):
         splits[wiring[k, COLUMN]] = 1
-    shrinks, bends, system, turned = wrist[1] > 0, wrist[1] == BENT, np.empty((9, n + 6)), np.empty((2, 9))
+    shrinks, system, turned, tied = wrist[1] > 0, np.empty((9, n + 6)), np.empty((2, 9)), np.empty((n, 3))
     looked = kept = 0
     while count > 0:
         if looked >= boxes or kept >= leaves.shape[0] - 1 or count + 1 > waiting.shape[0]:
@@ -109,7 +110,7 @@ def cover(
             half = laid.half[k] if wiring[k, ROTATES] == 1 else 0.0
             whole += half
             total += half if k < last else 0.0
-        straight = wrist[1] == SPLIT or (bends and may_be_straight(arm, laid, aligned))
+        straight = wrist[1] == SPLIT
         first = last if has_wrist and not shrinks else 0
         if excluded_by_balls(arm, laid, near, aligned, first, total > SMALL or not shrinks, weights):
             continue
@@ -119,7 +120,7 @@ def cover(
             b = to_first_order(arm, laid, near, aligned, cut, alone, rows, columns)
             if separated(columns, b, width, way):
                 continue
-            left = contracted(columns, b, 3 if alone else 6, centre, width, system) if shrinks else 1.0
+            left = contracted(columns, b, 3 if alone else 6, centre, width, system, tied) if shrinks else 1.0
             if left == 0.0:
                 continue
             if left < SHRUNK and widest(width, splits, 1, least) >= 0:
@@ -127,7 +128,9 @@ def cover(
                 count += 1
                 continue
         if has_wrist:
-            if wrist_turns(arm, laid, start, box[n:], aligned, 1, turned) == 0:
+            goal = moved(arm, laid, vector(laid.target_axes[S - 1]), aligned)
+            back = back_of(laid, moved(arm, laid, vector(laid.axes[last]), aligned))
+            if wrist_turns(arm, laid, start, box[n:], goal, back, 1, turned) == 0:
                 continue
             for k in range(3):
                 start[wiring[last + k, COLUMN]] = turned[0, k]
@@ -139,28 +142,12 @@ def cover(
         for c in range(n):
             if splits[c] == 1 and width[c] > least and (at < 0 or weights[c] > weights[at]):
                 at = c
-        if at < 0 and bends and not straight:
-            ways = wrist_turns(arm, laid, box[:n], box[n:], aligned, 2, turned)
-            straight = ranges_widely(turned, ways, least)  # then its joints are split as if it might be straight
-            if straight and left < SHRUNK:
-                put(centre, width, box)
-                count += 1
-                continue
         if at < 0 and straight:
             at = widest(width, splits, 1, FINER * least)
             at = widest(width, splits, 0, least) if at < 0 else at
         if at >= 0:
-            for side in range(2):
-                put(centre, width, waiting[count])
-                half = 0.5 * width[at]
-                waiting[count, n + at] = half
-                waiting[count, at] += half if side == 1 else -half
-                count += 1
-        elif bends and not straight:
-            for turn in range(ways):
-                bend(arm, turned[turn], centre, width)
-                put(centre, width, leaves[kept])
-                kept += 1
+            halve(centre, width, at, waiting[count : count + 2])
+            count += 2
         else:
             put(centre if shrinks else start, width, leaves[kept])
             kept += 1
@@ -173,6 +160,16 @@ def put(centre: Floats, width: Floats, box: Floats) -> None:
     n = centre.shape[0]
     for c in range(n):
         box[c], box[n + c] = centre[c], width[c]
+
+
+@inline
+def halve(centre: Floats, width: Floats, at: int, boxes: Floats) -> None:
+    """Write both halves of a box, split in one coordinate, as boxes (2, 2 n)."""
+    for side in range(2):
+        put(centre, width, boxes[side])
+        half = 0.5 * width[at]
+        boxes[side, centre.shape[0] + at] = half
+        boxes[side, at] += half if side == 1 else -half
 
 
 @inline

@@ -84,10 +84,8 @@ class Boxes:
 
         The last coordinates, beyond the chain's own, are those of the free joints at the tip.
         """
-        from pin_metaik.kinematics.proofs.box_search import cover
-
         kept = np.empty((leaves + 1, self._waiting.shape[1]))
-        looked, count, self._count = cover(
+        looked, count, self._count = self.arm.cover(
             *self.arm.arrays, *self._target, self._waiting, self._count, self._least, boxes, kept
         )
         self.looked += looked
