@@ -1,4 +1,6 @@
 # `make demo` and `make test` set up everything they need in .venv; Python 3.11+ and make are all a machine must have.
+# Bytecode is written, whatever the environment says: the tests start hundreds of programs that import the package.
+unexport PYTHONDONTWRITEBYTECODE
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
