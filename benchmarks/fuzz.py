@@ -239,6 +239,9 @@ def page(counts: dict[str, Counts], before: dict[str, Counts], by: dict[str, str
     read_by: dict[str, list[str]] = {}
     for name in counts:
         read_by.setdefault(by[name], []).append(name)
+    if not read_by:  # nothing new was asked for
+        yield earlier
+        return
     usual = max(read_by, key=lambda digest: len(read_by[digest]))
     other = "".join(f"; {digest}: *{'*, *'.join(names)}*" for digest, names in read_by.items() if digest != usual)
     yield f"{DIGESTS} {usual}{other}." + (f" Before: {earlier}" if earlier else "")

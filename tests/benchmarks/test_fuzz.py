@@ -51,6 +51,9 @@ def test_a_run_goes_on_from_the_page_of_another_and_counts_both(file: Path, tmp_
         and " | 1 | |" in text
     )
     assert text.splitlines()[-1].endswith(f"Before: {sources}")
+    assert "\n".join(page({}, before, {}, sources)).endswith(f"| all | 10 | 0 | 4 | 5 | 1 | |\n{sources}"), (
+        "nothing new"
+    )
 
 
 def test_what_is_not_kept_is_read_by_workers(tmp_path: Path) -> None:
