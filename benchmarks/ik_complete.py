@@ -13,11 +13,13 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import repeat
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import pinocchio as pin
@@ -28,6 +30,8 @@ import pin_metaik as mik
 from pin_metaik.dexterity import singular_values
 from pin_metaik.ik.problem import IKProblem
 from pin_metaik.ik.refine import DLS
+
+Measure: TypeAlias = Callable[[str, argparse.Namespace], str]  # the row of an arm
 
 EXACT, ROUGH = 1e-9, 1e-5  # m and rad
 ON_CURVE = 1e-6  # least singular value of the Jacobian below which a solution is one of a curve
@@ -163,10 +167,23 @@ def six(options: argparse.Namespace) -> Iterator[list[str]]:
         "| arm | solutions | missed | wrong | called complete | contradicted | us | us with boxes | peers |",
         "|---|---:|---:|---:|---:|---:|---:|---:|---|",
     ]
-    for name in options.arms or SIX:
-        with suppress(ImportError):
-            lines.append(six_row(name, options))
-            yield lines
+    for row in rows(six_row, options.arms or SIX, options):
+        lines.append(row)
+        yield lines
+
+
+def rows(measure: Measure, names: list[str], options: argparse.Namespace) -> Iterator[str]:
+    """The row of each arm that is there, some measured at once in processes of their own."""
+    with ProcessPoolExecutor(options.workers) as pool:
+        yield from filter(None, pool.map(row_of, repeat(measure), names, repeat(options)))
+
+
+def row_of(measure: Measure, name: str, options: argparse.Namespace) -> str:
+    """The row of an arm; none, if a package that has it is missing."""
+    try:
+        return measure(name, options)
+    except ImportError:
+        return ""
 
 
 def six_row(name: str, options: argparse.Namespace) -> str:
@@ -296,10 +313,9 @@ def seven(options: argparse.Namespace) -> Iterator[list[str]]:
         "| arm | curves a pose | closed | proved | by descents | off | nearest | ms, median | 90 % | select, ms |",
         "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|",
     ]
-    for name in options.arms or SEVEN:
-        with suppress(ImportError):
-            lines.append(seven_row(name, options))
-            yield lines
+    for row in rows(seven_row, options.arms or SEVEN, options):
+        lines.append(row)
+        yield lines
 
 
 def seven_row(name: str, options: argparse.Namespace) -> str:
@@ -351,6 +367,7 @@ def main() -> None:
     parser.add_argument("--poses", type=int, default=200, help="of each arm of seven joints")
     parser.add_argument("--descents", type=int, default=5_000, help="of each pose")
     parser.add_argument("--resolution", type=float, default=0.2, help="of self-motions, rad")
+    parser.add_argument("--workers", type=int, default=1, help="arms measured at once; more than one add to the times")
     parser.add_argument("--out", type=Path, default=Path(__file__).with_suffix(".md"))
     options = parser.parse_args()
     for name in options.sections or SECTIONS:

@@ -10,7 +10,7 @@ from pathlib import Path
 from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[1]
-LONGEST = 0.6  # s of processor time beyond what Pinocchio and numpy take to import; 0.3 where nothing else runs
+LONGEST = 3.5  # times what Pinocchio and numpy take to import, in processor time; 1.9 where nothing else runs
 
 OFFLINE = """
 import os, runpy, sys
@@ -41,7 +41,7 @@ def test_nothing_that_the_package_offers_asks_the_network(tmp_path: Path) -> Non
         assert done.returncode == expected, done.stderr
 
 
-def test_importing_takes_little_longer_than_pinocchio(tmp_path: Path) -> None:
+def test_importing_takes_a_few_times_as_long_as_pinocchio(tmp_path: Path) -> None:
     """With bytecode, as where the package is installed: without, half of the time is compiling."""
     written = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     written["PYTHONPYCACHEPREFIX"] = str(tmp_path)
@@ -54,7 +54,7 @@ def test_importing_takes_little_longer_than_pinocchio(tmp_path: Path) -> None:
         return after.children_user + after.children_system - before.children_user - before.children_system
 
     without = min(seconds("import numpy, pinocchio") for _ in range(2))
-    assert min(seconds("import pin_metaik") for _ in range(2)) - without < LONGEST
+    assert min(seconds("import pin_metaik") for _ in range(2)) < LONGEST * without
 
 
 def test_every_floor_is_met_here_and_printed_for_the_job_that_installs_it() -> None:

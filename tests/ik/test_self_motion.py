@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 import pin_metaik as mik
 from pin_metaik.errors import InvalidBudget, InvalidConfiguration, InvalidSetting, UnknownName
 from pin_metaik.ik.self_motion import EndReason
+from pin_metaik.kinematics.self_motion.near import mark_crossed
 from tests.robots_under_test import chain_of
 
 
@@ -69,6 +70,24 @@ def test_two_curves_that_are_very_near_to_each_other_are_told_apart(bend: float)
             assert all((np.diff(curve.t) > 0.0).all() for curve in motions)
             if chain.limits.contains(bent):
                 assert motions.nearest(chain.q(bent)).value < 1e-4
+
+
+def test_a_curve_goes_through_boxes_around_it_and_not_through_those_beside_it() -> None:
+    chain = chain_of("panda")
+    motions = mik.self_motions(chain, chain.poses(chain.box.sample(np.random.default_rng(2), 1)[0])[0, 0])
+    curve = max(motions, key=lambda one: one.length)
+    x = chain.x(curve.sample(0.013))
+    tangents = np.gradient(x, axis=0)
+    across = np.cross(tangents[:, :3], [0.3, -0.5, 0.8])
+    across /= np.abs(across).max(axis=1, keepdims=True)
+    width = np.full_like(x, 1e-9)
+    beside = x.copy()
+    beside[:, :3] += 1e-3 * across
+    for centre, expected in (x, 1), (beside, 0):
+        crossed = np.zeros(len(x), np.int64)
+        boxes = np.concatenate([centre, width], axis=1)
+        mark_crossed(boxes, curve.x, curve._tangents, np.zeros(7, np.int64), 1e-4, crossed)
+        assert (crossed[3:-3] == expected).all()
 
 
 def arm_with_an_elbow() -> pin.Model:

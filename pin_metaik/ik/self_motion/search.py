@@ -20,7 +20,8 @@ STEP = 0.05  # rad or m between the points of a curve, at most
 POINTS = 20_000  # of a curve at most, either way
 CHUNK, MOST = 4_096, 8_192  # boxes looked at, and kept, at a time; kept in all
 FINER = 8.0, 64.0, 512.0  # by how much smaller boxes that are far from all curves are looked at
-SPREAD = 16  # of the boxes to which no curve comes, from which descents start first, at most
+SPREAD = 16  # of the boxes to which no curve comes, or that are beside all, from which descents start first, at most
+THROUGH = 1e-4  # rad or m: a curve that is farther from a box does not go through it
 SEEDS = 512  # solutions to follow curves from, at a time
 DRAWN, LOOKED_UP, DRAWN_MORE = 64, 128, 512  # configurations to descend from at first; where boxes have no end
 SEED = DEFAULT_SEED, 0
@@ -67,8 +68,9 @@ class Search:
     def _is_covered(self, boxes: Boxes) -> bool:
         """Find the curves through all boxes that are kept; whether there is one near all of them.
 
-        Descents start from those to which no curve comes, at first from some of them. Those that are far from all
-        curves then are split again, as exclusion is weak where boxes are large.
+        Descents start from those to which no curve comes, at first from some of them, and from some beside the curves,
+        as there may be others very near to these. Those that are far from all curves then are split again, as exclusion
+        is weak where boxes are large.
         """
         kept = self._kept(boxes)
         for finer in (*FINER, None):
@@ -78,6 +80,9 @@ class Search:
                 others = kept[~self._are_met(kept)][::stride]
                 if len(others):
                     self._from(others[:, : self._problem.chain.n], boxes.least)
+            beside = kept[~self._are_crossed(kept)]
+            if len(beside):
+                self._from(beside[:: 1 + len(beside) // SPREAD, : self._problem.chain.n], 0.0)
             far = kept[~self._are_near(kept)]
             if not len(far):
                 return True
@@ -113,6 +118,16 @@ class Search:
         for curve in self.curves:
             mark_near(kept, curve.x, self._turning, side, distance, near)
         marked: NDArray[np.bool_] = near == 1
+        return marked
+
+    def _are_crossed(self, kept: Array) -> NDArray[np.bool_]:
+        """(k,) whether a curve goes through each box (k, 2 m), so that nothing else need be in it."""
+        from pin_metaik.kinematics.self_motion.near import mark_crossed
+
+        crossed = np.zeros(len(kept), np.int64)
+        for curve in self.curves:
+            mark_crossed(kept, curve.x, curve._tangents, self._turning, THROUGH, crossed)
+        marked: NDArray[np.bool_] = crossed == 1
         return marked
 
     @property

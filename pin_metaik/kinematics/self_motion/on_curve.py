@@ -10,7 +10,7 @@ from pin_metaik.compiled import Floats, Ints, jit, shared
 from pin_metaik.kinematics.kernel.forward import copy, sizes_of, unpack
 from pin_metaik.kinematics.kernel.layout import Arm
 from pin_metaik.kinematics.kernel.scratch import Scratch, scratch_for
-from pin_metaik.kinematics.self_motion.near import is_near_line
+from pin_metaik.kinematics.self_motion.near import is_near_line, point_between
 from pin_metaik.kinematics.self_motion.trace import CurveScratch, curve_scratch, put_on_curve
 
 NEAR = 5e-3  # rad or m: what is farther from the line between two points of a curve is not on it there
@@ -36,24 +36,15 @@ def is_on_piece(
     Between them the curve is Hermite's cubic, put back onto the targets; so is x, as it solves them to a tolerance
     only. Where the curve is singular nothing can be told apart.
     """
-    n, h = x.shape[0], 0.0
-    for c in range(n):
-        h += (b[c] - a[c]) ** 2
-    h = math.sqrt(h)
-    point, tangent = curve.trial, curve.tangent
+    n, point, tangent, size = x.shape[0], curve.trial, curve.tangent, 0.0
     for _ in range(PASSES):
-        s, along, size, off = share, 0.0, 0.0, 0.0
+        size, along, off = point_between(a, b, tangents, share, point, tangent), 0.0, 0.0
         for c in range(n):
-            u, v, d = h * tangents[0, c], h * tangents[1, c], b[c] - a[c]
-            second, third = 3.0 * d - 2.0 * u - v, u + v - 2.0 * d
-            point[c] = a[c] + s * (u + s * (second + s * third))
-            tangent[c] = u + s * (2.0 * second + 3.0 * s * third)
             along += (x[c] - point[c]) * tangent[c]
-            size += tangent[c] ** 2
             off = max(off, abs(x[c] - point[c]))
         if off < SAME:
             return True
-        share = min(max(s + along / size, 0.0), 1.0)
+        share = min(max(share + along / size, 0.0), 1.0)
     for c in range(n):
         tangent[c] /= math.sqrt(size)
     exact = curve.before
