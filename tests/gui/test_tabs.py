@@ -170,6 +170,7 @@ def test_other_sites_and_paths_out_of_the_page_are_refused(toolbox: Any) -> None
 def test_a_run_goes_step_by_step_and_on(socket: Any, toolbox: Any) -> None:
     socket.set("Page", "Metaheuristics at work")
     socket.find("Run both side by side")
+    socket.set("Iterations", 20)
     (session,) = toolbox.tabs.values()
 
     def evaluations() -> list[float]:
