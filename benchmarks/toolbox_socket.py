@@ -13,6 +13,7 @@ import zstandard
 from viser import _messages as messages
 from websockets.sync.client import connect
 
+ASK = 0.1  # s at most between two looks at what is waited for
 WAIT = 60.0  # s
 
 
@@ -101,10 +102,13 @@ class SocketTab:
         self.send(messages.TransformControlsUpdateMessage(node, wxyz, position, self._owners[node]))  # type: ignore[arg-type]
 
     def wait_until(self, met: Callable[[], bool], seconds: float = WAIT) -> None:
-        """Wait until something is so."""
+        """Wait until something is so, here or in the server: it is asked at each message, and as often in between."""
+        end = time.monotonic() + seconds
         with self._changed:
-            if not self._changed.wait_for(met, seconds):
-                raise TimeoutError(f"labels {list(self.labels.values())[-60:]}; notes {self.notes}")
+            while not met():
+                if time.monotonic() > end:
+                    raise TimeoutError(f"labels {list(self.labels.values())[-60:]}; notes {self.notes}")
+                self._changed.wait(ASK)
 
     def close(self) -> None:
         """Close it."""
