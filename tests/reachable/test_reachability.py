@@ -94,10 +94,10 @@ def test_the_browser_shows_a_map_with_the_robot_in_it(
     shown = show_reachability(ur5_map, world, port=0)
     log, page = tmp_path / "log", f"http://localhost:{shown.viewer.get_port()}"
     with log.open("w") as told:
-        profile = [f"--user-data-dir={tmp_path / 'profile'}", "--window-size=800,600", "--enable-unsafe-swiftshader"]
+        profile = [f"--user-data-dir={tmp_path / 'profile'}", "--window-size=500,340", "--enable-unsafe-swiftshader"]
         seen = subprocess.Popen([*browser, *profile, page], stdout=subprocess.DEVNULL, stderr=told)
         try:
-            picture = shown.picture(640, 480, timeout=300.0).astype(float)
+            picture = shown.picture(320, 240, timeout=300.0).astype(float)
         finally:
             seen.terminate()
             seen.wait()
