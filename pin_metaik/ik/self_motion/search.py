@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from time import perf_counter
 
 import numpy as np
@@ -105,29 +106,28 @@ class Search:
 
     def _are_near(self, kept: Array) -> NDArray[np.bool_]:
         """(k,) whether all of each box (k, 2 m) is within the resolution of a point of a curve."""
-        return self._marked(kept, 1.0, self._resolution)
+        from pin_metaik.kinematics.self_motion.near import mark_near
+
+        return self._marked(kept, lambda x, _, on: mark_near(kept, x, self._turning, 1.0, self._resolution, on))
 
     def _are_met(self, kept: Array) -> NDArray[np.bool_]:
         """(k,) whether a curve comes to each box (k, 2 m), or nearly: where none does there may be another one."""
-        return self._marked(kept, -1.0, STEP)
-
-    def _marked(self, kept: Array, side: float, distance: float) -> NDArray[np.bool_]:
         from pin_metaik.kinematics.self_motion.near import mark_near
 
-        near = np.zeros(len(kept), np.int64)
-        for curve in self.curves:
-            mark_near(kept, curve.x, self._turning, side, distance, near)
-        marked: NDArray[np.bool_] = near == 1
-        return marked
+        return self._marked(kept, lambda x, _, on: mark_near(kept, x, self._turning, -1.0, STEP, on))
 
     def _are_crossed(self, kept: Array) -> NDArray[np.bool_]:
         """(k,) whether a curve goes through each box (k, 2 m), so that nothing else need be in it."""
         from pin_metaik.kinematics.self_motion.near import mark_crossed
 
-        crossed = np.zeros(len(kept), np.int64)
+        return self._marked(kept, lambda x, along, on: mark_crossed(kept, x, along, self._turning, THROUGH, on))
+
+    def _marked(self, kept: Array, mark: Callable[[Array, Array, NDArray[np.int64]], None]) -> NDArray[np.bool_]:
+        """(k,) which boxes ``mark`` marks by the points (p, n) and the tangents there of some curve."""
+        marks = np.zeros(len(kept), np.int64)
         for curve in self.curves:
-            mark_crossed(kept, curve.x, curve._tangents, self._turning, THROUGH, crossed)
-        marked: NDArray[np.bool_] = crossed == 1
+            mark(curve.x, curve._tangents, marks)
+        marked: NDArray[np.bool_] = marks == 1
         return marked
 
     @property

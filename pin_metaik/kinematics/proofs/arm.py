@@ -161,9 +161,10 @@ def proof_arm(paths: ChainArrays, limits: Limits, tip: int, free: Free) -> Proof
         path = path.with_turn(n, free.index(True)) if sum(free) == 1 else path.with_wrist(n)
         turns = len(path.joints) - (last - first)
         lower, upper = np.append(lower, [-np.pi] * turns), np.append(upper, [np.pi] * turns)
-    ends = [_Meeting.of(way, lower, upper) for way in (path, path.reversed())]
+    ways = path, path.reversed()
+    ends = [_Meeting.of(way, lower, upper) for way in ways]
     backwards = ends[1].points > ends[0].points
-    path, meeting = (path.reversed(), ends[1]) if backwards else (path, ends[0])
+    path, meeting = ways[backwards], ends[backwards]
     knots = _knots(path, lower, upper)
     if meeting.wrist is not None:
         knots[-3:] = meeting.wrist

@@ -94,6 +94,7 @@ def cover(
     for k in range(last):
         splits[wiring[k, COLUMN]] = 1
     shrinks, system, turned, tied = wrist[1] > 0, np.empty((9, n + 6)), np.empty((2, 9)), np.empty((n, 3))
+    straight = wrist[1] == SPLIT
     looked = kept = 0
     while count > 0:
         if looked >= boxes or kept >= leaves.shape[0] - 1 or count + 1 > waiting.shape[0]:
@@ -110,7 +111,6 @@ def cover(
             half = laid.half[k] if wiring[k, ROTATES] == 1 else 0.0
             whole += half
             total += half if k < last else 0.0
-        straight = wrist[1] == SPLIT
         first = last if has_wrist and not shrinks else 0
         if excluded_by_balls(arm, laid, near, aligned, first, total > SMALL or not shrinks, weights):
             continue
