@@ -264,36 +264,34 @@ class SelfMotionCurve:
         row, c = np.nonzero(turning)
         vertices = self.t[row] + (self.t[row + 1] - self.t[row]) * a[row, c] / (a[row, c] - b[row, c])
         t = np.unique(np.append(self.t, vertices))
+        before, behind = self._jumps(t)
+        spans = zip(np.append(t[0], behind), np.append(before, t[-1]), strict=True)
+        return [np.unique([a, *t[(t > a) & (t < b)], b]) for a, b in spans]
+
+    def _jumps(self, t: Array) -> tuple[Array, Array]:
+        """The places between points t (k,) where an angle jumps to another copy: just before each, and behind it."""
         turns = self._turns(t)
-        pieces: list[Array] = []
-        inside = [float(t[0])]
-        for i in range(1, len(t)):
-            at, to, known = float(t[i - 1]), float(t[i]), turns[i - 1]
-            while (turns[i] != known).any():
-                end, at, known = self._jump(at, to, known)
-                pieces.append(np.array([*inside, end] if end > inside[-1] else inside))
-                inside = [at]
-            if to > inside[-1]:
-                inside.append(to)
-        return [*pieces, np.array(inside)]
+        i = np.flatnonzero((turns[:-1] != turns[1:]).any(axis=1))
+        a, to, known, last = t[i], t[i + 1], turns[i], turns[i + 1]
+        before, behind = np.empty(0), np.empty(0)
+        while len(a):  # the first jump of each span, then what comes after it
+            b, after = to, last
+            while (b - a).max() > CUT:
+                middle = 0.5 * (a + b)
+                there = self._turns(middle)
+                same = (there == known).all(axis=1)
+                a, b = np.where(same, middle, a), np.where(same, b, middle)
+                after = np.where(same[:, None], after, there)
+            before, behind = np.append(before, a), np.append(behind, b)
+            more = (after != last).any(axis=1)
+            a, to, known, last = b[more], to[more], after[more], last[more]
+        return np.sort(before), np.sort(behind)
 
     def _turns(self, t: Array) -> Array:
         """By how many whole turns each angle is given away from ``x`` at t (k,): (k, n)."""
         X = self._at(t)
         turns: Array = np.round((self._turned(X) - X) / (2.0 * np.pi))
         return turns
-
-    def _jump(self, a: float, b: float, turns: Array) -> tuple[float, float, Array]:
-        """The first place found between a, with these turns (n,), and b where they change: its ends, the turns then."""
-        after = self._turns(np.array([b]))[0]
-        while b - a > CUT:
-            middle = 0.5 * (a + b)
-            there = self._turns(np.array([middle]))[0]
-            if (there == turns).all():
-                a = middle
-            else:
-                b, after = middle, there
-        return a, b, after
 
     def _least(self, values: Values, rate: float | None, below: float = np.inf) -> CurvePoint | None:
         """Where values are least; None where that is known not to be below a number.

@@ -143,14 +143,32 @@ class Search:
             DLS().descent().gather(self._problem, starts, found, 0, apart, len(starts) + 1, self._left, branch=False)
         )
         self.spent += spent
-        found, on = found[:known], np.zeros(known, np.int64)
+        looked = len(self.curves)
+        self._add(found[:known])
+        while looked < len(self.curves):
+            new, looked = self.curves[looked:], len(self.curves)
+            self._add(np.concatenate([self._beside(curve) for curve in new]))
+
+    def _add(self, solutions: Array) -> None:
+        """Follow the curves through solutions (k, n) that are on none of those that are known."""
+        on = np.zeros(len(solutions), np.int64)
         for curve in self.curves:
-            self._mark_on(curve, found, on)
-        for k, x in enumerate(found):
+            self._mark_on(curve, solutions, on)
+        for k, x in enumerate(solutions):
             new = self._followed(x) if on[k] == 0 else None
             if new is not None:
                 self.curves.append(new)
-                self._mark_on(new, found, on)
+                self._mark_on(new, solutions, on)
+
+    def _beside(self, curve: SelfMotionCurve) -> Array:
+        """Solutions (k, n) inside the limits that are near to a curve, but on another one, as for an elbow's sides."""
+        from pin_metaik.kinematics.self_motion.twins import EVERY, find_twins
+
+        problem, twins = self._problem, np.empty((1 + len(curve.x) // EVERY, self._problem.chain.n))
+        given = problem.chain.bare, problem.records, problem.kernel_rows
+        twins = twins[: find_twins(*given, curve.x, curve._tangents, twins)]
+        self.spent += len(curve.x) // EVERY
+        return twins[((twins >= self._lower) & (twins <= self._upper)).all(axis=1)]
 
     def _mark_on(self, curve: SelfMotionCurve, solutions: Array, on: NDArray[np.int64]) -> None:
         """Mark with 1 the solutions (k, n) that are on a curve."""

@@ -187,10 +187,12 @@ def cover_with_wrist(
         if not wide and not range_widely(turned, ways, least):
             kept = keep(arm, centre, width, turned, ways, leaves, kept)
             continue
-        if short:
-            at = heaviest(arm, width, width, S, 0.0)
+        if has_shoulder and not short:
+            at = heaviest(arm, width, weights, w, 0.0)
+        elif wide:
+            at = heaviest(arm, width, weights, w, least)
         else:
-            at = heaviest(arm, width, weights, w, least if wide and not has_shoulder else 0.0)
+            at = heaviest(arm, width, width, S if short else w, 0.0)
         halve(centre, width, at, waiting[count : count + 2])
         count += 2
     return looked, kept, count

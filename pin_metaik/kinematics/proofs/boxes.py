@@ -9,7 +9,7 @@ import numpy as np
 from pin_metaik.kinematics.proofs.arm import Floats, ProofArm
 
 TINY = 1e-7  # rad or m, half width below which a box is a place to descend from
-DEPTH = 1024  # boxes that wait at most; a box of 8 coordinates that is halved to TINY leaves some 250
+DEPTH = 1024  # boxes for which there is room at first; a box of 8 coordinates that is halved to TINY leaves some 250
 
 
 class Boxes:
@@ -85,9 +85,15 @@ class Boxes:
         The last coordinates, beyond the chain's own, are those of the free joints at the tip.
         """
         kept = np.empty((leaves + 1, self._waiting.shape[1]))
-        looked, count, self._count = self.arm.cover(
-            *self.arm.arrays, *self._target, self._waiting, self._count, self._least, boxes, kept
-        )
+        looked = found = 0
+        while True:
+            some, more, self._count = self.arm.cover(
+                *self.arm.arrays, *self._target, self._waiting, self._count, self._least, boxes - looked, kept[found:]
+            )
+            looked, found = looked + some, found + more
+            if self.done or looked >= boxes or found >= leaves:
+                break
+            self._waiting = np.concatenate([self._waiting, np.empty_like(self._waiting)])  # there was no room left
         self.looked += looked
-        self.clean = self.clean and count == 0
-        return kept[:count]
+        self.clean = self.clean and found == 0
+        return kept[:found]

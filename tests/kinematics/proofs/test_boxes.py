@@ -5,6 +5,7 @@ import pinocchio as pin
 import pytest
 
 import pin_metaik as mik
+from pin_metaik.kinematics.proofs import boxes as boxes_of
 from pin_metaik.kinematics.proofs.arm import WHOLE, Path, ProofArm, proof_arm
 
 
@@ -192,3 +193,26 @@ def test_a_box_shrinks_to_the_solution_in_it_and_what_is_empty_to_nothing() -> N
     np.testing.assert_allclose(kept[0, :6], x, atol=1e-6)
     empty = boxes.within(beside, 1e-6)
     assert not len(empty.look(40, 10)) and empty.excluded
+
+
+@pytest.mark.parametrize("robot", ["panda", "puma560", "aerial_arm"])
+def test_boxes_wait_where_there_was_no_room_for_them(robot: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    chain, kept = chain_of(robot), []
+    pose = chain.poses(chain.box.sample(np.random.default_rng(5), 1)[0])[0, 0]
+    for room in 1024, 9:
+        monkeypatch.setattr(boxes_of, "DEPTH", room)
+        boxes = chain._boxes(0, pose, 0.0, 0.0, least=0.05, shrink=True)
+        kept.append(boxes.look(200_000, 20_000))
+        assert boxes.done
+    np.testing.assert_array_equal(*kept)
+
+
+def test_boxes_come_to_an_end_where_only_the_first_joint_is_wide_and_the_wrist_may_be_straight() -> None:
+    """They were split in joints that were 1e-160 rad wide, until there was no room, and then looked at for ever."""
+    chain = chain_of("rv7fl")
+    x = np.array([3.8782949229110404, -1.2911321556647906, 2.482711224947752, 1.4122523269968768, 1.8724596723804159])
+    pose = chain.poses(np.append(x, 4.342845967835998))[0, 0]
+    begin = chain.nominal_proof.judge(pose, 0.0, 0.0).pieces
+    boxes = chain._boxes(0, pose, 0.0, 0.0, least=0.0025, shrink=True, begin=begin)
+    boxes.look(100_000, 10_000)
+    assert boxes.done
