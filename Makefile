@@ -5,12 +5,15 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 
-.PHONY: demo test lint tests quick soak urdf docs wheel check-release lock clean
+.PHONY: demo test lint warm tests quick soak urdf docs wheel check-release lock clean
 
 demo: $(VENV)/installed
 	$(BIN)/pin-metaik demo
 
-test: lint tests
+# The sources are checked while the loops are compiled.
+test: $(VENV)/developed
+	$(MAKE) --jobs=2 lint warm
+	$(MAKE) tests
 
 lint: $(VENV)/developed
 	$(BIN)/ruff check .
@@ -19,12 +22,13 @@ lint: $(VENV)/developed
 	$(BIN)/lint-imports
 
 # Every loop is compiled first, on all cores: or each of the tests' processes would compile what another has begun.
-tests: $(VENV)/developed
+warm: $(VENV)/developed
 	$(BIN)/pin-metaik warm
+
+tests: warm
 	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
-quick: $(VENV)/developed
-	$(BIN)/pin-metaik warm
+quick: warm
 	$(BIN)/python -m pytest -n 2 --dist loadgroup -m "not slow"
 
 # Hours: what the tests ask a few times, asked until nothing is left to find. Pages in benchmarks/ say what came of it.

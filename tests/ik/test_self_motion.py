@@ -175,6 +175,18 @@ def test_the_nearest_point_is_found_where_limits_exclude_copies_by_whole_turns()
     assert jumps > 10
 
 
+@pytest.mark.parametrize("room", [1e-6, 0.0])
+def test_the_best_point_is_found_in_a_second_where_a_joint_has_hardly_any_room(room: float) -> None:
+    """The elbow's value is that of all points, so that nothing can be ruled out by how much it might change."""
+    whole, best = arm_with_an_elbow(), []
+    x = mik.Chain(whole, "tip").box.sample(np.random.default_rng(1), 1)[0]
+    x[3] = 0.8
+    for more in 0.1, room:
+        chain = mik.Chain(whole, "tip", limits={"j4": (0.8 - more, 0.8 + more)})
+        best.append(mik.self_motions(chain, chain.poses(x)[0, 0]).best("limits"))
+    assert best[1].value == pytest.approx(best[0].value, abs=1e-3)
+
+
 def test_select_takes_the_best_of_all_solutions_of_a_redundant_arm() -> None:
     chain = chain_of("panda")
     rng = np.random.default_rng(3)

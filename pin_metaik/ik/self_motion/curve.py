@@ -24,6 +24,7 @@ Values: TypeAlias = Callable[[Array], Array]  # of coordinates (k, n)
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 NEAR, SHARP = 1e-4, 1e-7  # how far off a least value may be before it is sharpened; then its interval, rad or m
 CUT = 1e-10  # rad or m of t: width of a place where an angle jumps by a whole turn
+LOOKED = 20_000  # points of a curve after which no more are looked at for the best of the whole of it
 BISECTIONS = 20  # of the place where a curve runs into an obstacle
 
 
@@ -132,7 +133,8 @@ class SelfMotionCurve:
         """The point nearest to a configuration (nq,), rad and m weighted alike; angles the shorter way round.
 
         It is the nearest of the whole curve to within 1e-4, because a distance changes by no more than the joints move,
-        but for places where an angle comes to another copy by whole turns: there the curve is cut.
+        but for places where an angle comes to another copy by whole turns: there the curve is cut. With weights so
+        large that this takes more than 20,000 points, it is the nearest of these.
 
         Args:
             q: The configuration.
@@ -153,9 +155,10 @@ class SelfMotionCurve:
 
         Args:
             criterion: As for ``IKSolver.select``: a name, ``Weighted``, or a function of a configuration (nq,). For
-                ``"nearest"`` (to ``q0``) and ``"limits"`` the result is the best of the whole curve to within 1e-4. Any
-                other criterion is evaluated at every point of ``x``, and minimised around each point that is better
-                than its two neighbours.
+                ``"nearest"`` (to ``q0``) and ``"limits"`` the result is the best of the whole curve to within 1e-4, or,
+                where a joint's range is so short that this takes more than 20,000 points, the best of these. Any other
+                criterion is evaluated at every point of ``x``, and minimised around each point that is better than its
+                two neighbours.
 
         Raises:
             UnknownName: No criterion of that name.
@@ -228,7 +231,7 @@ class SelfMotionCurve:
             name, weights = criterion.criterion, weights_of(criterion, self.problem.chain.names)
         else:
             name, weights = criterion if isinstance(criterion, str) else "", np.ones(len(limits.lower))
-        spans = limits.upper - limits.lower
+        spans = np.where(limits.upper > limits.lower, limits.upper - limits.lower, np.inf)
         if not np.isfinite(spans).any():
             return None
         rates = {"nearest": weights, "limits": 2.0 * weights / spans}
@@ -315,7 +318,8 @@ class SelfMotionCurve:
     def _below(self, values: Values, rate: float, below: float) -> list[tuple[float, float]]:
         """A span round the least value: others cannot be less by more than NEAR (Piyavskii 1972).
 
-        There is none where it is not below a number.
+        There is none where it is not below a number. Where the range of a joint is so short that others can hardly be
+        ruled out, it is the least of those that were looked at.
         """
         pieces = self._pieces
         parts = [values(self.x) if piece is self.t else values(self._at(piece)) for piece in pieces]
@@ -325,12 +329,13 @@ class SelfMotionCurve:
         best, at = float(f.min()), float(t[int(np.argmin(f))])
         if best >= below:
             best, at = below, np.nan
-        while True:
+        looked = 0
+        while looked < LOOKED:
             hopeful = 0.5 * (fa + fb - rate * (b - a)) < best - NEAR
             a, b, fa, fb = a[hopeful], b[hopeful], fa[hopeful], fb[hopeful]
             if not len(a):
                 break
-            middle = 0.5 * (a + b)
+            middle, looked = 0.5 * (a + b), looked + len(a)
             f = values(self._at(middle))
             if f.min() < best:
                 best, at = float(f.min()), float(middle[int(np.argmin(f))])
