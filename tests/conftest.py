@@ -1,7 +1,8 @@
-"""Nothing that tests work out stays in the user's cache; how long properties are looked at; the browser for pages."""
+"""Where tests keep what they work out; how long properties are looked at; Ctrl-C; the browser for pages."""
 
 import os
 import shutil
+import signal
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -10,6 +11,9 @@ COMMON = {"deadline": None, "suppress_health_check": [*HealthCheck], "print_blob
 settings.register_profile("quick", max_examples=12, derandomize=True, database=None, **COMMON)
 settings.register_profile("deep", max_examples=2_000, **COMMON)  # make soak
 settings.load_profile("quick")
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as a shell has it for what it starts in the background
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 FLAGS = [
     "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-component-update",
