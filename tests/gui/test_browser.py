@@ -29,6 +29,7 @@ OPEN_ALL = """() => {
   seen.forEach((title) => title.click());
   return seen.length;
 }"""
+pytestmark = pytest.mark.xdist_group("browser")  # one worker, as each would open one of its own
 DESIGNS = 120  # of the paper's 3600: two generations, whose numbers are the library's as well
 
 

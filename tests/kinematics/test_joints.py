@@ -135,8 +135,8 @@ def test_a_mobile_manipulator_drives_and_reaches_with_the_quick_solver() -> None
 
 
 def test_a_base_drives_round_what_is_in_the_way() -> None:
-    robot = mik.load_robot("tiago", planar=True)
-    chain = mik.Chain(robot, TIAGO_HAND, limits={"root_joint.x": (-2.0, 2.0), "root_joint.y": (-2.0, 2.0)})
+    robot = mik.load_robot("ur5", planar=True)
+    chain = mik.Chain(robot, "tool0", limits={"root_joint.x": (-2.0, 2.0), "root_joint.y": (-2.0, 2.0)})
     world = mik.CollisionWorld(robot, load_scene("table"))
     cleared, rng = 0, np.random.default_rng(4)
     for q in chain.q(chain.box.sample(rng, 300)):
