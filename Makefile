@@ -80,5 +80,5 @@ $(VENV)/developed: $(VENV)/installed
 	touch $@
 
 $(VENV)/documented: $(VENV)/installed
-	$(BIN)/python -m pip install --quiet --no-compile --editable ".[docs]"
+	$(BIN)/python -m pip install --quiet --editable ".[docs]"
 	touch $@
