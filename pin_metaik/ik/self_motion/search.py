@@ -44,6 +44,7 @@ class Search:
         self._problem, self._base, self._resolution, self._watch = problem, base, resolution, watch
         self._total = budget.evaluations or 0
         self._until = np.inf if budget.seconds is None else perf_counter() + budget.seconds
+        self._equations = problem.chain.bare, problem.records, problem.kernel_rows
         self._turning = limits.multi_turn.astype(np.int64)
         n = problem.chain.n
         self._ways = np.empty((4, POINTS, n))
@@ -164,9 +165,8 @@ class Search:
         """Solutions (k, n) inside the limits that are near to a curve, but on another one, as for an elbow's sides."""
         from pin_metaik.kinematics.self_motion.twins import EVERY, find_twins
 
-        problem, twins = self._problem, np.empty((1 + len(curve.x) // EVERY, self._problem.chain.n))
-        given = problem.chain.bare, problem.records, problem.kernel_rows
-        twins = twins[: find_twins(*given, curve.x, curve._tangents, twins)]
+        twins = np.empty((1 + len(curve.x) // EVERY, self._problem.chain.n))
+        twins = twins[: find_twins(*self._equations, curve.x, curve._tangents, twins)]
         self.spent += len(curve.x) // EVERY
         return twins[((twins >= self._lower) & (twins <= self._upper)).all(axis=1)]
 
@@ -174,22 +174,21 @@ class Search:
         """Mark with 1 the solutions (k, n) that are on a curve."""
         from pin_metaik.kinematics.self_motion.on_curve import mark_on
 
-        given = self._problem.chain.bare, self._problem.records, self._problem.kernel_rows, self._turning
-        mark_on(*given, solutions, curve.x, curve._tangents, on)
+        mark_on(*self._equations, self._turning, solutions, curve.x, curve._tangents, on)
 
     def _followed(self, x: Array) -> SelfMotionCurve | None:
         """The curve through a solution x (n,), from end to end; None in a singularity, and for a point alone."""
         from pin_metaik.kinematics.self_motion.follow import follow
 
-        problem, (points, tangents, t) = self._problem, self._curve
-        given = problem.chain.bare, problem.records, problem.kernel_rows, self._lower, self._upper, self._turning
+        points, tangents, t = self._curve
+        given = *self._equations, self._lower, self._upper, self._turning
         count, *ends, spent = follow(*given, x.copy(), STEP, self._left, self._ways, points, tangents, t)
         self.spent += spent
         if count < 2:
             return None
         begin, end = self._end(*ends[:2]), self._end(*ends[2:])
         found = points[:count].copy(), t[:count].copy(), (begin, end), tangents[:count].copy()
-        return SelfMotionCurve(problem, self._base, *found)
+        return SelfMotionCurve(self._problem, self._base, *found)
 
     def _end(self, how: int, limit: int) -> CurveEnd:
         """How a curve ends, as ``follow`` says it."""
